@@ -1,0 +1,27 @@
+# The few build rules that every room shares.
+
+add_library(duet_options INTERFACE)
+target_compile_options(duet_options INTERFACE -Wall -Wextra -Wconversion -Wshadow)
+target_include_directories(duet_options INTERFACE ${PROJECT_SOURCE_DIR})
+if(DUET_NATIVE)
+    target_compile_options(duet_options INTERFACE -march=native)
+endif()
+
+# duet_library(NAME SOURCES... ): a static library with the project's warnings and include root.
+function(duet_library name)
+    add_library(${name} STATIC ${ARGN})
+    target_link_libraries(${name} PUBLIC duet_options)
+    set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+endfunction()
+
+# duet_test(NAME LABEL LABEL SOURCES ... LIBRARIES ...): one GoogleTest program; each TEST is a ctest.
+function(duet_test name)
+    cmake_parse_arguments(arg "" "LABEL;TIMEOUT" "SOURCES;LIBRARIES" ${ARGN})
+    if(NOT arg_TIMEOUT)
+        set(arg_TIMEOUT 120)
+    endif()
+    add_executable(${name} ${arg_SOURCES})
+    target_link_libraries(${name} PRIVATE duet_options ${arg_LIBRARIES} GTest::gtest_main)
+    target_compile_definitions(${name} PRIVATE DUET_SOURCE_DIR="${PROJECT_SOURCE_DIR}" DUET_BINARY_DIR="${PROJECT_BINARY_DIR}")
+    gtest_discover_tests(${name} DISCOVERY_TIMEOUT 30 TEST_PREFIX "${arg_LABEL}." PROPERTIES LABELS ${arg_LABEL} TIMEOUT ${arg_TIMEOUT})
+endfunction()
