@@ -1,0 +1,125 @@
+// What the fluid core is told to model, and the plain data it exchanges: two dimensions, SI units,
+// per metre of depth.
+
+#pragma once
+
+#include "fluid_solver/vector.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace duet::fluid {
+
+/// What differs on a part of the cavity's boundary; all else is fixed, no-slip and adiabatic.
+struct Wall {
+    std::string name;
+    Vec2 from, to; ///< every side of the region on the line between them belongs to this wall
+    std::optional<double> temperature; ///< K; adiabatic without it
+    Vec2 velocity;                     ///< m/s, along the wall
+};
+
+enum class PressureLevel {
+    zero_mean, ///< the mean over each compartment is zero
+    free       ///< compression itself is the physics
+};
+
+/// The fluid's part of a scene.
+struct Config {
+    double spacing = 0;               ///< m, between neighbouring particles
+    std::vector<Vec2> region;         ///< corners of the cavity, in order round it (either way)
+    double density = 1;               ///< kg/m3
+    double kinematic_viscosity = 0;   ///< m2/s
+    double heat_capacity = 1;         ///< J/(kg K)
+    double conductivity = 0;          ///< W/(m K)
+    double thermal_expansion = 0;     ///< 1/K
+    double reference_temperature = 0; ///< K, where the buoyancy vanishes
+    double initial_temperature = 0;   ///< K
+    Vec2 initial_velocity;            ///< m/s
+    Vec2 gravity;                     ///< m/s2
+    std::vector<Wall> walls;
+    PressureLevel pressure_level = PressureLevel::zero_mean;
+    double sound_speed = 0; ///< m/s; 0 adapts it to the flow
+    unsigned seed = 1;      ///< of the initial disorder
+    double disorder = 0;    ///< initial random displacement, in spacings
+    int threads = 1;
+};
+
+/// A chain of interface nodes: segment j runs from nodes[j] to nodes[j+1], the last one back to
+/// nodes[0] if closed. The fluid lies to the right of the direction of travel. An open chain starts
+/// and ends on the cavity's boundary and replaces what it covers of it.
+struct Chain {
+    std::vector<std::uint32_t> nodes;
+    bool closed = false;
+    std::size_t segments() const { return closed ? nodes.size() : nodes.size() - 1; }
+};
+
+/// The interface nodes at one time; three arrays of equal length.
+struct InterfaceState {
+    std::vector<Vec2> position;      ///< m
+    std::vector<Vec2> velocity;      ///< m/s
+    std::vector<double> temperature; ///< K
+};
+
+/// What passed to the solid in one window.
+struct InterfaceImpulse {
+    std::vector<Vec2> impulse; ///< N s/m, by node, on the solid
+    std::vector<double> heat;  ///< J/m, by segment in the order of the chains, into the solid
+};
+
+/// The fields at one place.
+struct Values {
+    double temperature = 0; ///< K
+    Vec2 velocity;          ///< m/s
+    double pressure = 0;    ///< Pa
+};
+
+/// What the fluid holds and what has passed since the start.
+struct Ledger {
+    double mass = 0;                     ///< kg/m
+    double heat = 0;                     ///< J/m, thermal energy relative to the start
+    double heat_from_interface = 0;      ///< J/m
+    double heat_from_walls = 0;          ///< J/m
+    Vec2 impulse_from_interface;         ///< N s/m
+    double work_from_interface = 0;      ///< J/m
+    double kinetic_energy = 0;           ///< J/m
+    double exchanged_heat = 0;           ///< J/m, absolute values summed over segments and windows
+    double exchanged_impulse = 0;        ///< N s/m, absolute values summed over nodes and windows
+    double mean_temperature = 0;         ///< K
+    double max_speed = 0;                ///< m/s
+    double sound_speed = 0;              ///< m/s
+    double closure_conduction = 0;       ///< J/m, given back: Laplacian against wall flux, summed
+    double closure_conduction_abs = 0;   ///< J/m, absolute values summed over steps
+    double closure_shift = 0;            ///< J/m, given back: correction after the shift, summed
+    double closure_shift_abs = 0;        ///< J/m, absolute values summed over steps
+    std::uint64_t particles_outside = 0; ///< outside the cavity or inside a solid, now
+    std::uint64_t wall_hits = 0;         ///< particles put back from beyond a wall since the start
+};
+
+/// A named wall, over the last window.
+struct WallReport {
+    std::string name;
+    double length = 0;    ///< m, what is left of it beside leaning solids
+    double heat_flow = 0; ///< W/m, into the fluid, mean over the last window
+    double heat = 0;      ///< J/m, into the fluid since the start
+    Vec2 force;           ///< N/m, on the wall, mean over the last window
+};
+
+/// All particles in the order of their identity (constant through a run).
+struct Snapshot {
+    std::vector<Vec2> position;
+    std::vector<Vec2> velocity;
+    std::vector<double> temperature;
+    std::vector<double> pressure;
+};
+
+/// CPU-independent wall-clock seconds spent in one phase of the step since the start.
+struct Phase {
+    std::string name;
+    double seconds = 0;
+};
+
+} // namespace duet::fluid
