@@ -1,7 +1,13 @@
 // A series of snapshots in time, in one HDF5 file beside an XDMF file that ParaView opens.
 //
-// The file is valid after every append: HDF5 is flushed first, then the XDMF is written aside and
-// renamed.
+// The pair is valid after every append, also when the process is killed: the frame's data are
+// flushed before the frame is linked, and the XDMF is written aside and renamed last. Other
+// programs may read while the series grows.
+//
+// In the files plane vectors and positions carry a zero as third component: ParaView then draws
+// points and arrows without a filter. A mesh equal to the last frame's is linked, not written
+// again. The XDMF is rewritten whole with each frame, about 1 kB a frame: meant for hundreds of
+// frames.
 
 #pragma once
 
@@ -17,8 +23,9 @@ namespace duet::snapshot {
 
 enum class Cell { vertex, triangle };
 
-/// Values of one field; components = 1 (scalar), 2 (vector, stored as given), 3 or more (tensor
-/// components, each by name in docs). `per_cell`: one entry a cell instead of one a point.
+/// Values of one field; components = 1 (scalar), 2 (plane vector, stored with a zero third), 3
+/// (vector) or 6 (symmetric tensor xx, xy, xz, yy, yz, zz). `per_cell`: one entry a cell instead of
+/// one a point.
 struct Field {
     std::string name;
     int components = 1;
@@ -44,8 +51,10 @@ class Series {
     Series(Series&&) noexcept;
     Series& operator=(Series&&) noexcept;
 
-    /// Appends group /frame_000000 ... with datasets `position` [points][2], `connectivity`, and
-    /// one a field.
+    /// Appends group /frame_000000 ... with attribute `time` (s) and data sets `position`
+    /// [points][3], `connectivity` [cells][1 or 3] (vertices: 0, 1, ...), and one a field
+    /// ([entries] or [entries][components]). Throws std::invalid_argument if sizes or names do not
+    /// fit, std::runtime_error naming the path and the reason if it cannot be written.
     void append(const Frame& frame);
 
   private:

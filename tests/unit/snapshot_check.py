@@ -1,0 +1,47 @@
+"""Reads series as ParaView does: every reference of STEM.xdmf must lead to a data set of the stated
+shape and type in STEM.h5. Prints the number of frames of each; exits with 1 and a sentence if not.
+With --sealed it also wants the values that the killed writer of snapshot_series.cpp wrote."""
+
+import sys
+import xml.etree.ElementTree as xml
+from pathlib import Path
+
+import h5py
+import numpy
+
+
+def arrays(data, element):
+    for item in element.iter("DataItem"):
+        file, place = item.text.split(":")
+        if file != Path(data.filename).name:
+            sys.exit(f"{item.text} is not in the file beside the XDMF")
+        if place not in data:
+            sys.exit(f"{item.text} does not exist")
+        array = data[place][()]
+        shape = tuple(int(n) for n in item.get("Dimensions").split())
+        kind = {"Float": "<f8", "UInt": "<u4"}[item.get("NumberType")]
+        # XDMF leaves a last extent of one out.
+        if array.shape != shape and array.shape != shape + (1,):
+            sys.exit(f"{item.text} has the shape {array.shape}, the XDMF says {shape}")
+        if array.dtype != numpy.dtype(kind):
+            sys.exit(f"{item.text} has the type {array.dtype}, the XDMF says {kind}")
+        yield place.rsplit("/", 1)[1], array
+
+
+def frames(stem, sealed):
+    data = h5py.File(f"{stem}.h5", "r")
+    grids = xml.parse(f"{stem}.xdmf").getroot().findall("./Domain/Grid/Grid")
+    for index, grid in enumerate(grids):
+        found = dict(arrays(data, grid))
+        connectivity = found["connectivity"]
+        if grid.find("Topology").get("NumberOfElements") != str(len(connectivity)):
+            sys.exit(f"frame {index}: the topology's count is not that of its connectivity")
+        if connectivity.max() >= len(found["position"]):
+            sys.exit(f"frame {index}: a cell names a point beyond the last")
+        if sealed and not (found["temperature"] == index).all():
+            sys.exit(f"frame {index}: the temperature is not {index}")
+    return len(grids)
+
+
+stems = [argument for argument in sys.argv[1:] if argument != "--sealed"]
+print(*(frames(Path(stem), "--sealed" in sys.argv) for stem in stems))
