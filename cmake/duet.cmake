@@ -2,6 +2,10 @@
 
 add_library(duet_options INTERFACE)
 target_compile_options(duet_options INTERFACE -Wall -Wextra -Wconversion -Wshadow)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+    # GCC 12 warns of overlap in "literal" + std::string (its bug 105651).
+    target_compile_options(duet_options INTERFACE -Wno-restrict)
+endif()
 target_include_directories(duet_options INTERFACE ${PROJECT_SOURCE_DIR})
 if(DUET_NATIVE)
     target_compile_options(duet_options INTERFACE -march=native)
