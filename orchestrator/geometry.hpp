@@ -1,0 +1,52 @@
+// The plane geometry that the checks of a scene need: polygons, rectangles, lines. Lengths in m;
+// `tolerance` is the distance below which two things touch.
+
+#pragma once
+
+#include "duet/v1/scene.pb.h"
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace duet::orchestrator {
+
+using Point = v1::Vector;
+using Polygon = std::vector<Point>;
+
+Point point(double x, double y);
+double distance(const Point& a, const Point& b);
+
+/// Corners of a rectangle, counter-clockwise from the lower left.
+Polygon corners(const v1::Rectangle& rectangle);
+
+/// Enclosed area, positive for either sense of travel.
+double area(const Polygon& polygon);
+
+/// The larger extent along x or y.
+double extent(const Polygon& polygon);
+
+/// What keeps a polygon from being simple, as half a sentence; nothing for a good one.
+std::optional<std::string> polygon_fault(const Polygon& polygon, double tolerance);
+
+/// Inside or on the boundary.
+bool inside(const Polygon& polygon, const Point& p, double tolerance);
+
+/// Every point of the rectangle is inside the polygon or on its boundary.
+bool rectangle_inside(const v1::Rectangle& rectangle, const Polygon& polygon, double tolerance);
+
+/// The two share more than a boundary.
+bool overlap(const v1::Rectangle& a, const v1::Rectangle& b, double tolerance);
+
+/// Strictly inside the rectangle, farther than tolerance from its sides.
+bool strictly_inside(const v1::Rectangle& rectangle, const Point& p, double tolerance);
+
+/// The point lies on the straight piece from a to b.
+bool on_piece(const Point& p, const Point& a, const Point& b, double tolerance);
+
+/// Length of the part of the piece c-d that lies on the piece a-b; 0 if they are not on one line.
+double
+common_length(const Point& a, const Point& b, const Point& c, const Point& d, double tolerance);
+
+} // namespace duet::orchestrator

@@ -1,0 +1,349 @@
+#include "orchestrator/scene_check.hpp"
+
+#include "orchestrator/figures.hpp"
+#include "orchestrator/geometry.hpp"
+#include "orchestrator/reference_table.hpp"
+#include "orchestrator/schema.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+
+namespace duet::orchestrator {
+
+namespace {
+
+std::string entry(const std::string& path, int i) {
+    return path + "[" + std::to_string(i) + "]";
+}
+
+std::string at_text(const Point& p) {
+    return "[" + number_text(p.x()) + ", " + number_text(p.y()) + "]";
+}
+
+class Checker {
+  public:
+    explicit Checker(const Case& given) : case_(given), scene_(given.scene) {
+        region_.assign(scene_.fluid().region().begin(), scene_.fluid().region().end());
+        double size = region_.empty() ? 0 : extent(region_);
+        for (const v1::Body& body : scene_.solid().body())
+            size = std::max({size, body.rectangle().width(), body.rectangle().height()});
+        tolerance_ = 1e-9 * size;
+    }
+
+    std::vector<Problem> run() {
+        if (!scene_.has_fluid() && !scene_.has_solid())
+            problem("", "the case holds neither [fluid] nor [solid]: there is nothing to model");
+        if (scene_.time().window() > scene_.time().end())
+            problem("time.window", "time.window must not be longer than time.end");
+        if (scene_.has_fluid())
+            check_fluid();
+        if (scene_.has_solid())
+            check_bodies();
+        check_names("probe", scene_.probe());
+        for (int i = 0; i < scene_.probe_size(); ++i)
+            check_probe(scene_.probe(i), entry("probe", i));
+        for (int i = 0; i < scene_.check_size(); ++i)
+            check_check(scene_.check(i), entry("check", i));
+        return problems_;
+    }
+
+  private:
+    void check_fluid();
+    void check_wall(const v1::Wall& wall, const std::string& path);
+    void check_bodies();
+    void check_body(const v1::Body& body, const std::string& path);
+    void check_boundary(const v1::Boundary& boundary,
+                        const v1::Rectangle& rectangle,
+                        const std::string& path);
+    void check_probe(const v1::Probe& probe, const std::string& path);
+    void check_place(const v1::Probe& probe, const Point& p, const std::string& path);
+    void check_check(const v1::Check& check, const std::string& path);
+    void check_quantity(const v1::Check& check, const v1::Probe* probe, const std::string& path);
+    void check_reference(const v1::Check& check, const v1::Probe* probe, const std::string& path);
+    const v1::Probe* find_probe(const std::string& name) const;
+
+    /// Names find things again, and head the columns of CSV files.
+    template <class Entries>
+    void check_names(const std::string& path, const Entries& entries) {
+        std::set<std::string> seen;
+        for (int i = 0; i < entries.size(); ++i) {
+            const std::string& name = entries.Get(i).name();
+            const std::string at = entry(path, i) + ".name";
+            if (name.empty() || name.find_first_of(",\"\n\r#") != std::string::npos)
+                problem(at, at + " must be a word, without commas, quotes, or '#'");
+            else if (!seen.insert(name).second)
+                problem(at,
+                        "the name '" + name + "' is already taken; each [[" + path
+                            + "]] needs its own");
+        }
+    }
+
+    template <class Entries>
+    void must_be_known(const std::string& name,
+                       const std::string& what,
+                       const Entries& entries,
+                       const std::string& path) {
+        std::vector<std::string> names;
+        for (const auto& one : entries)
+            names.push_back(one.name());
+        if (std::find(names.begin(), names.end(), name) != names.end())
+            return;
+        const auto near = nearest(name, names);
+        problem(path,
+                "there is no " + what + " '" + name + "'"
+                    + (near            ? "; did you mean '" + *near + "'?"
+                       : names.empty() ? "; the case has none"
+                                       : "; there is " + list(names, "and")));
+    }
+
+    void problem(const std::string& path, const std::string& sentence) {
+        problems_.push_back({case_.places.find(path), sentence});
+    }
+
+    const Case& case_;
+    const v1::Scene& scene_;
+    Polygon region_;
+    double tolerance_ = 0;
+    bool region_good_ = false;
+    std::vector<Problem> problems_;
+};
+
+void Checker::check_fluid() {
+    const std::string path = "fluid.region";
+    if (const auto fault = polygon_fault(region_, tolerance_))
+        return problem(path, "fluid.region is no simple polygon: " + *fault);
+    if (area(region_) <= tolerance_ * extent(region_))
+        return problem(path, "fluid.region encloses no area");
+    region_good_ = true;
+    if (scene_.fluid().spacing() > extent(region_) / 2)
+        problem("fluid.spacing", "fluid.spacing is more than half the extent of the region");
+    check_names("fluid.wall", scene_.fluid().wall());
+    for (int i = 0; i < scene_.fluid().wall_size(); ++i)
+        check_wall(scene_.fluid().wall(i), entry("fluid.wall", i));
+}
+
+void Checker::check_wall(const v1::Wall& wall, const std::string& path) {
+    const Point& a = wall.along(0);
+    const Point& b = wall.along(1);
+    if (distance(a, b) <= tolerance_)
+        return problem(path + ".along", path + ".along needs two different points");
+    int sides = 0;
+    for (std::size_t i = 0; i < region_.size(); ++i)
+        sides += on_piece(region_[i], a, b, tolerance_)
+                 && on_piece(region_[(i + 1) % region_.size()], a, b, tolerance_);
+    if (sides == 0)
+        problem(path + ".along",
+                "no side of fluid.region lies between " + at_text(a) + " and " + at_text(b)
+                    + "; give the two ends of a side");
+    for (int j = 0; j < scene_.fluid().wall_size(); ++j) {
+        const v1::Wall& other = scene_.fluid().wall(j);
+        if (&other == &wall)
+            break;
+        if (common_length(a, b, other.along(0), other.along(1), tolerance_) > tolerance_)
+            problem(path + ".along",
+                    "the walls '" + other.name() + "' and '" + wall.name() + "' share a side");
+    }
+    const double across =
+        (b.x() - a.x()) * wall.velocity().y() - (b.y() - a.y()) * wall.velocity().x();
+    const double speed = distance(point(0, 0), wall.velocity());
+    if (std::abs(across) > 1e-9 * speed * distance(a, b))
+        problem(path + ".velocity", "a wall of a closed cavity can only move along itself");
+}
+
+void Checker::check_bodies() {
+    const auto& bodies = scene_.solid().body();
+    check_names("solid.body", bodies);
+    for (int i = 0; i < bodies.size(); ++i) {
+        check_body(bodies.Get(i), entry("solid.body", i));
+        for (int j = 0; j < i; ++j)
+            if (overlap(bodies.Get(i).rectangle(), bodies.Get(j).rectangle(), tolerance_))
+                problem(entry("solid.body", i) + ".rectangle",
+                        "the bodies '" + bodies.Get(j).name() + "' and '" + bodies.Get(i).name()
+                            + "' overlap");
+    }
+}
+
+void Checker::check_body(const v1::Body& body, const std::string& path) {
+    const v1::Rectangle& rectangle = body.rectangle();
+    if (region_good_ && !rectangle_inside(rectangle, region_, tolerance_))
+        problem(path + ".rectangle",
+                "the body '" + body.name()
+                    + "' reaches out of fluid.region; it may touch the "
+                      "region's boundary from within");
+    if (body.element_size() > std::min(rectangle.width(), rectangle.height()) * (1 + 1e-9))
+        problem(path + ".element_size",
+                path + ".element_size is larger than the body's shorter side, "
+                    + number_text(std::min(rectangle.width(), rectangle.height())) + " m");
+    const bool moving = body.initial_velocity().x() != 0 || body.initial_velocity().y() != 0;
+    if (body.motion() == v1::Body::FIXED && moving)
+        problem(path + ".initial_velocity",
+                "a body with motion = \"fixed\" cannot have a velocity; did you mean motion = "
+                "\"deformable\"?");
+    if (body.motion() == v1::Body::DEFORMABLE && !body.has_youngs_modulus())
+        problem(path, "the deformable body '" + body.name() + "' lacks the key 'youngs_modulus'");
+    check_names(path + ".boundary", body.boundary());
+    for (int i = 0; i < body.boundary_size(); ++i)
+        check_boundary(body.boundary(i), rectangle, entry(path + ".boundary", i));
+}
+
+void Checker::check_boundary(const v1::Boundary& boundary,
+                             const v1::Rectangle& rectangle,
+                             const std::string& path) {
+    const Point& a = boundary.along(0);
+    const Point& b = boundary.along(1);
+    if (distance(a, b) <= tolerance_)
+        return problem(path + ".along", path + ".along needs two different points");
+    const Polygon sides = corners(rectangle);
+    double found = 0;
+    for (std::size_t i = 0; i < sides.size(); ++i)
+        found += common_length(a, b, sides[i], sides[(i + 1) % sides.size()], tolerance_);
+    if (found <= tolerance_)
+        problem(path + ".along",
+                "no side of the body lies between " + at_text(a) + " and " + at_text(b));
+}
+
+void Checker::check_probe(const v1::Probe& probe, const std::string& path) {
+    const bool of_fluid = probe.of() == v1::Probe::FLUID;
+    if (of_fluid ? !scene_.has_fluid() : !scene_.has_solid())
+        return problem(path + ".of",
+                       std::string("the case has no [") + (of_fluid ? "fluid" : "solid")
+                           + "] that could measure it");
+    if (probe.has_at() && probe.line_size() > 0)
+        problem(path, "a probe is taken at a point or along a line, not both");
+    if (probe.line_size() == 1
+        || (probe.line_size() == 2 && distance(probe.line(0), probe.line(1)) <= tolerance_))
+        return problem(path + ".line", path + ".line needs two different end points");
+    if (!probe.wall().empty()) {
+        if (!of_fluid)
+            problem(path + ".wall", "only the fluid has walls; a probe of the solid takes a body");
+        must_be_known(probe.wall(), "wall", scene_.fluid().wall(), path + ".wall");
+    }
+    if (!probe.body().empty()) {
+        if (of_fluid)
+            problem(path + ".body", "only the solid has bodies; a probe of the fluid takes a wall");
+        must_be_known(probe.body(), "body", scene_.solid().body(), path + ".body");
+    }
+    if (probe.has_at())
+        check_place(probe, probe.at(), path + ".at");
+    for (int i = 0; i < probe.line_size(); ++i)
+        check_place(probe, probe.line(i), path + ".line");
+}
+
+/// The point, and its mirror image if one is asked for, lie where there is something to measure.
+void Checker::check_place(const v1::Probe& probe, const Point& p, const std::string& path) {
+    std::vector<Point> points = {p};
+    if (probe.has_mirror())
+        points.push_back(point(2 * probe.mirror() - p.x(), p.y()));
+    for (const Point& q : points) {
+        const std::string where = at_text(q) + (&q == &points[0] ? "" : " (the mirror image)");
+        if (probe.of() == v1::Probe::SOLID) {
+            const auto& bodies = scene_.solid().body();
+            const bool found = std::any_of(bodies.begin(), bodies.end(), [&](const v1::Body& body) {
+                return (probe.body().empty() || probe.body() == body.name())
+                       && inside(corners(body.rectangle()), q, tolerance_);
+            });
+            if (!found)
+                problem(path, "the point " + where + " lies in no body");
+            continue;
+        }
+        if (region_good_ && !inside(region_, q, tolerance_))
+            problem(path, "the point " + where + " lies outside fluid.region");
+        for (const v1::Body& body : scene_.solid().body())
+            if (strictly_inside(body.rectangle(), q, tolerance_))
+                problem(path,
+                        "the point " + where + " lies in the body '" + body.name()
+                            + "', where there is no fluid");
+    }
+}
+
+const v1::Probe* Checker::find_probe(const std::string& name) const {
+    for (const v1::Probe& probe : scene_.probe())
+        if (probe.name() == name)
+            return &probe;
+    return nullptr;
+}
+
+void Checker::check_check(const v1::Check& check, const std::string& path) {
+    const v1::Probe* probe = find_probe(check.quantity());
+    check_quantity(check, probe, path);
+    for (int i = 0; i < check.at_size(); ++i)
+        if (check.at(i) < 0 || check.at(i) > scene_.time().end() * (1 + 1e-12))
+            problem(entry(path + ".at", i),
+                    "the time " + number_text(check.at(i)) + " lies outside the run, 0 to "
+                        + number_text(scene_.time().end()) + " s");
+    if (check.has_value() == !check.reference().empty())
+        return problem(path, "a check needs either a 'value' or a 'reference' with its 'column'");
+    if (!check.reference().empty())
+        check_reference(check, probe, path);
+}
+
+/// It names something that the run measures, and the norm fits what is measured.
+void Checker::check_quantity(const v1::Check& check,
+                             const v1::Probe* probe,
+                             const std::string& path) {
+    const std::string& name = check.quantity();
+    if (!probe) {
+        if (check.at_size() > 0)
+            problem(path + ".at", "the audit figure '" + name + "' belongs to the whole run");
+        for (const char* role : {"fluid", "solid"})
+            if (name.rfind(std::string(role) + ".", 0) == 0) {
+                if (role == std::string("fluid") ? !scene_.has_fluid() : !scene_.has_solid())
+                    problem(path + ".quantity", "the case has no [" + std::string(role) + "]");
+                return;
+            }
+        std::vector<std::string> known = audit_figure_names();
+        if (std::find(known.begin(), known.end(), name) != known.end())
+            return;
+        for (const v1::Probe& one : scene_.probe())
+            known.push_back(one.name());
+        const auto near = nearest(name, known);
+        return problem(
+            path + ".quantity",
+            "'" + name + "' is neither a probe of the case nor an audit figure"
+                + (near ? "; did you mean '" + *near + "'?" : "; there is " + list(known, "and")));
+    }
+    const bool profile = probe->line_size() > 0 && probe->reduce() == v1::Probe::EACH;
+    const bool over_points = check.norm() == v1::Check::RMS || check.norm() == v1::Check::MAXIMUM;
+    if (profile && !over_points)
+        problem(path + ".norm",
+                "the probe '" + name + "' is a line: its norm is \"rms\" or \"maximum\"");
+}
+
+void Checker::check_reference(const v1::Check& check,
+                              const v1::Probe* probe,
+                              const std::string& path) {
+    try {
+        const ReferenceTable table(check.reference());
+        for (const auto& [name, key] :
+             {std::pair(check.column(), ".column"), std::pair(check.along(), ".along")}) {
+            if (table.has(name) || (name.empty() && key == std::string(".along")))
+                continue;
+            const auto near = nearest(name, table.names());
+            problem(path + key,
+                    "the reference has no column '" + name + "'"
+                        + (near ? "; did you mean '" + *near + "'?"
+                                : "; there is " + list(table.names(), "and")));
+            return;
+        }
+        const std::vector<double>& x = table.column(check.along());
+        if (!std::is_sorted(x.begin(), x.end()))
+            problem(path + ".reference", "the reference's first coordinate does not ascend");
+        else if (!probe || probe->line_size() == 0 || probe->reduce() != v1::Probe::EACH)
+            for (const double t : check.at())
+                table.interpolate(check.column(), check.along(), t);
+    } catch (const std::runtime_error& error) {
+        problem(path + ".reference", error.what());
+    }
+}
+
+} // namespace
+
+void check_scene(const Case& given) {
+    std::vector<Problem> problems = Checker(given).run();
+    if (!problems.empty())
+        throw CaseError(std::move(problems));
+}
+
+} // namespace duet::orchestrator
