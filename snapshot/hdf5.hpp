@@ -1,8 +1,8 @@
 // A thin, owning layer over the HDF5 1.10 C API: what this project writes and nothing more.
 //
 // Every failure is a std::runtime_error that names the file, the place in it and HDF5's own reason;
-// HDF5's habit of printing its error stack is switched off with the first file. Debian's HDF5 is
-// not thread-safe: use files from one thread at a time.
+// HDF5's habit of printing its error stack is switched off in the thread that opens a file: use the
+// file from that thread.
 
 #pragma once
 

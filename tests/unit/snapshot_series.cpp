@@ -83,6 +83,20 @@ TEST_F(Snapshots, AnUnchangedMeshIsStoredOnce) {
     EXPECT_LT(std::filesystem::file_size(folder / "s.h5") - first, 40000U);
 }
 
+/// Frame n has 50 + n particles of temperature n. Ends by a signal, or with status 1 on an error.
+[[noreturn]] void append_for_ever(const std::filesystem::path& stem) try {
+    Series series(stem, Cell::vertex);
+    for (std::size_t frame = 0;; ++frame) {
+        const Numbers position(2 * (50 + frame), 0.0);
+        const Numbers temperature(50 + frame, static_cast<double>(frame));
+        series.append(
+            {static_cast<double>(frame), position, {}, {{"temperature", 1, temperature}}});
+    }
+} catch (const std::exception& error) {
+    std::fputs(error.what(), stderr);
+    _exit(1);
+}
+
 TEST_F(Snapshots, AKilledWriterLeavesAReadableSeries) {
     constexpr int trials = 20;
     std::string stems;
@@ -90,15 +104,8 @@ TEST_F(Snapshots, AKilledWriterLeavesAReadableSeries) {
         const std::filesystem::path stem = folder / ("s" + std::to_string(trial));
         stems += " " + stem.string();
         const pid_t writer = fork();
-        if (writer == 0) {
-            Series series(stem, Cell::vertex);
-            for (std::size_t frame = 0;; ++frame) {
-                const Numbers position(2 * (50 + frame), 0.0);
-                const Numbers temperature(50 + frame, static_cast<double>(frame));
-                series.append(
-                    {static_cast<double>(frame), position, {}, {{"temperature", 1, temperature}}});
-            }
-        }
+        if (writer == 0)
+            append_for_ever(stem);
         // Odd times, so that the kill falls on every part of an append.
         usleep(static_cast<useconds_t>(20011 + 2917 * trial));
         kill(writer, SIGKILL);
