@@ -1,0 +1,214 @@
+#include "fluid_solver/fluid_participant.hpp"
+
+#include "fluid_solver/fluid_probes.hpp"
+
+namespace duet::fluid {
+
+namespace {
+
+Vec2 to_vector(const v1::Vector& v) {
+    return {v.x(), v.y()};
+}
+
+/// Unpacks [N][2] and [N] arrays into the core's state, reusing its storage.
+void unpack(const protocol::InterfaceMotion& motion, InterfaceState& state) {
+    const std::size_t nodes = motion.nodes();
+    state.position.resize(nodes);
+    state.velocity.resize(nodes);
+    state.temperature = motion.temperature;
+    for (std::size_t i = 0; i < nodes; ++i) {
+        state.position[i] = {motion.position[2 * i], motion.position[2 * i + 1]};
+        state.velocity[i] = {motion.velocity[2 * i], motion.velocity[2 * i + 1]};
+    }
+}
+
+/// Impulse and heat of one window as mean loads over it.
+void pack(const InterfaceImpulse& passed,
+          const protocol::Window& window,
+          protocol::InterfaceLoad& load) {
+    load.time = window.time;
+    load.length = window.length;
+    load.force.resize(2 * passed.impulse.size());
+    load.heat_flow.resize(passed.heat.size());
+    load.impulse_x = load.impulse_y = load.heat = 0;
+    for (std::size_t i = 0; i < passed.impulse.size(); ++i) {
+        load.force[2 * i] = passed.impulse[i].x / window.length;
+        load.force[2 * i + 1] = passed.impulse[i].y / window.length;
+        load.impulse_x += passed.impulse[i].x;
+        load.impulse_y += passed.impulse[i].y;
+    }
+    for (std::size_t j = 0; j < passed.heat.size(); ++j) {
+        load.heat_flow[j] = passed.heat[j] / window.length;
+        load.heat += passed.heat[j];
+    }
+}
+
+/// Runs `work`; what the core throws becomes the failure that the protocol reports.
+template <typename Work>
+auto reported(Work&& work) {
+    try {
+        return work();
+    } catch (const SceneError& error) {
+        throw protocol::Error(v1::Failed::SCENE, error.what());
+    } catch (const Diverged& error) {
+        throw protocol::Error(v1::Failed::DIVERGED, error.what());
+    }
+}
+
+} // namespace
+
+Config config_from_scene(const v1::Scene& scene, unsigned threads) {
+    const auto& fluid = scene.fluid();
+    Config config;
+    config.spacing = fluid.spacing();
+    for (const auto& corner : fluid.region()) {
+        config.region.push_back(to_vector(corner));
+    }
+    config.density = fluid.density();
+    config.kinematic_viscosity = fluid.kinematic_viscosity();
+    config.heat_capacity = fluid.heat_capacity();
+    config.conductivity = fluid.conductivity();
+    config.thermal_expansion = fluid.thermal_expansion();
+    config.reference_temperature = fluid.reference_temperature();
+    config.initial_temperature = fluid.initial_temperature();
+    config.initial_velocity = to_vector(fluid.initial_velocity());
+    config.gravity = to_vector(scene.gravity());
+    for (const auto& wall : fluid.wall()) {
+        Wall& w = config.walls.emplace_back();
+        w.name = wall.name();
+        w.from = to_vector(wall.along(0));
+        w.to = to_vector(wall.along(1));
+        if (wall.has_temperature()) {
+            w.temperature = wall.temperature();
+        }
+        w.velocity = to_vector(wall.velocity());
+    }
+    config.pressure_level =
+        fluid.pressure_level() == v1::Fluid::FREE ? PressureLevel::free : PressureLevel::zero_mean;
+    config.sound_speed = fluid.sound_speed();
+    config.seed = fluid.seed();
+    config.disorder = fluid.disorder();
+    config.threads = static_cast<int>(threads > 0 ? threads : 1);
+    return config;
+}
+
+std::string Participant::name() const {
+    return "duet-fluid " DUET_VERSION;
+}
+
+void Participant::configure(const v1::Configure& configure,
+                            const std::vector<protocol::Chain>& chains,
+                            const protocol::InterfaceMotion& start,
+                            v1::Ready& ready) {
+    scene_ = configure.scene();
+    std::vector<Chain> core_chains;
+    for (const auto& chain : chains) {
+        core_chains.push_back({chain.nodes, chain.closed});
+    }
+    unpack(start, start_);
+    reported([&] {
+        fluid_.emplace(config_from_scene(scene_, configure.threads()), core_chains, start_);
+        for (const auto& probe : scene_.probe()) {
+            if (probe.of() == v1::Probe::FLUID) {
+                check_probe(probe, scene_, *fluid_);
+            }
+        }
+    });
+    series_.emplace(std::filesystem::path(configure.run_folder()) / "fluid",
+                    snapshot::Cell::vertex,
+                    std::map<std::string, std::string>{{"title", scene_.title()}});
+    write_snapshot();
+
+    ready.set_stable_step(fluid_->stable_step());
+    ready.set_unknowns(fluid_->size());
+    for (const auto& line : fluid_->model()) {
+        ready.add_model(line);
+    }
+    fill(*ready.mutable_ledger());
+    take_probes(*ready.mutable_sample());
+}
+
+void Participant::advance(const protocol::Window& window,
+                          const protocol::InterfaceMotion& start,
+                          const protocol::InterfaceMotion& end,
+                          protocol::InterfaceLoad& load,
+                          v1::Report& report) {
+    unpack(start, start_);
+    unpack(end, end_);
+    const int steps = reported([&] { return fluid_->advance(window.length, start_, end_); });
+    pack(fluid_->passed(), window, load);
+
+    report.set_steps(static_cast<std::uint32_t>(steps));
+    report.set_stable_step(fluid_->stable_step());
+    fill(*report.mutable_ledger());
+    if (window.sample) {
+        take_probes(*report.mutable_sample());
+        for (const auto& phase : fluid_->phases()) {
+            (*report.mutable_timing()->mutable_phase())[phase.name] = phase.seconds;
+        }
+    }
+    if (window.snapshot) {
+        write_snapshot();
+    }
+}
+
+std::string Participant::save() const {
+    return fluid_->save();
+}
+
+void Participant::restore(const std::string& state) {
+    reported([&] { fluid_->restore(state); });
+}
+
+void Participant::finish() {
+    series_.reset();
+}
+
+void Participant::fill(v1::Ledger& ledger) const {
+    const Ledger now = fluid_->ledger();
+    ledger.set_mass(now.mass);
+    ledger.set_heat(now.heat);
+    ledger.set_heat_from_interface(now.heat_from_interface);
+    ledger.set_heat_from_walls(now.heat_from_walls);
+    ledger.set_impulse_x(now.impulse_from_interface.x);
+    ledger.set_impulse_y(now.impulse_from_interface.y);
+    ledger.set_work(now.work_from_interface);
+    ledger.set_kinetic_energy(now.kinetic_energy);
+    ledger.set_exchanged_heat(now.exchanged_heat);
+    ledger.set_exchanged_impulse(now.exchanged_impulse);
+    auto& figure = *ledger.mutable_figure();
+    figure["closure_conduction"] = now.closure_conduction;
+    figure["closure_conduction_abs"] = now.closure_conduction_abs;
+    figure["closure_shift"] = now.closure_shift;
+    figure["closure_shift_abs"] = now.closure_shift_abs;
+    figure["particles_outside"] = static_cast<double>(now.particles_outside);
+    figure["wall_hits"] = static_cast<double>(now.wall_hits);
+    figure["max_speed"] = now.max_speed;
+    figure["sound_speed"] = now.sound_speed;
+}
+
+void Participant::take_probes(google::protobuf::RepeatedPtrField<v1::Sample>& samples) const {
+    for (const auto& probe : scene_.probe()) {
+        if (probe.of() == v1::Probe::FLUID) {
+            *samples.Add() = take_probe(probe, scene_, *fluid_);
+        }
+    }
+}
+
+void Participant::write_snapshot() {
+    const Snapshot now = fluid_->snapshot();
+    // A Vec2 is two doubles, so an array of them is the [N][2] array that the file wants.
+    static_assert(sizeof(Vec2) == 2 * sizeof(double));
+    const auto flat = [](const std::vector<Vec2>& v) {
+        return std::span<const double>(v.empty() ? nullptr : &v.front().x, 2 * v.size());
+    };
+    snapshot::Frame frame;
+    frame.time = fluid_->time();
+    frame.position = flat(now.position);
+    frame.fields = {{"temperature", 1, now.temperature},
+                    {"velocity", 2, flat(now.velocity)},
+                    {"pressure", 1, now.pressure}};
+    series_->append(frame);
+}
+
+} // namespace duet::fluid
