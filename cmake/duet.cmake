@@ -7,6 +7,7 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_L
     target_compile_options(duet_options INTERFACE -Wno-restrict)
 endif()
 target_include_directories(duet_options INTERFACE ${PROJECT_SOURCE_DIR})
+target_compile_definitions(duet_options INTERFACE DUET_VERSION="${PROJECT_VERSION}")
 if(DUET_NATIVE)
     target_compile_options(duet_options INTERFACE -march=native)
 endif()
