@@ -1,0 +1,111 @@
+#include "solid_solver/body.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+namespace duet::solid {
+
+namespace {
+
+BodyConfig checked(BodyConfig config) {
+    try {
+        check_mesh(config.mesh);
+    } catch (const std::invalid_argument& fault) {
+        throw std::invalid_argument("Body '" + config.name + "': " + fault.what());
+    }
+    if (config.motion == Motion::deformable && !(config.material.youngs_modulus > 0)) {
+        throw std::invalid_argument("Body '" + config.name
+                                    + "' is deformable but has no Young's modulus; give "
+                                      "youngs_modulus, or make its motion fixed.");
+    }
+    return config;
+}
+
+} // namespace
+
+Body::Body(BodyConfig config)
+    : config_(checked(std::move(config))), domains_(make_domains(config_.mesh, config_.smoothing)),
+      heat_(config_, domains_) {
+    if (config_.motion == Motion::deformable) {
+        mechanics_.emplace(config_, domains_, heat_.temperature(), heat_.capacity());
+        return;
+    }
+    rest_velocity_.assign(2 * nodes(), 0.0);
+    for (const Point& p : config_.mesh.node) {
+        rest_position_.push_back(p.x());
+        rest_position_.push_back(p.y());
+    }
+}
+
+void Body::set_interface_load(std::span<const double> heat, std::span<const double> force) {
+    heat_.set_interface_heat(heat);
+    if (mechanics_) {
+        mechanics_->set_interface_force(force);
+    }
+}
+
+double Body::stable_step() const {
+    const double thermal = heat_.stable_step();
+    const double mechanical = mechanics_ ? mechanics_->stable_step() : 0;
+    if (thermal == 0 || mechanical == 0) {
+        return std::max(thermal, mechanical);
+    }
+    return std::min(thermal, mechanical);
+}
+
+// The order of section 2.3 of the paper, thermal before mechanical: the heat takes the strain rate
+// of the motion made last, the stress takes the new temperature. Started and ended at whole steps,
+// so the motion that the heat takes its rate from stands first. The staggering is centred in time.
+void Body::step(double dt) {
+    if (!mechanics_) {
+        heat_.step(dt);
+        return;
+    }
+    mechanics_->drift(dt);
+    heat_.step(dt, mechanics_->heating(dt));
+    mechanics_->respond(dt, heat_.temperature());
+}
+
+std::uint32_t Body::advance(double length) {
+    constexpr double safety = 0.9; // the bound is an estimate from below of a frequency that moves
+    constexpr double steps_between_updates = 256;
+    const double limit = safety * stable_step();
+    const double count = limit > 0 ? std::max(1.0, std::ceil(length / limit)) : 1;
+    const auto steps = static_cast<std::uint32_t>(std::min(count, 4e9));
+    for (std::uint32_t i = 0; i < steps; ++i) {
+        step(length / steps);
+    }
+    check_finite();
+    steps_since_update_ += steps;
+    if (mechanics_ && steps_since_update_ >= steps_between_updates) {
+        mechanics_->update_frequency();
+        steps_since_update_ = 0;
+    }
+    return steps;
+}
+
+void Body::check_finite() const {
+    const std::span<const double> t = temperature(), v = velocity();
+    for (std::size_t i = 0; i < nodes(); ++i) {
+        if (!std::isfinite(t[i] + v[2 * i] + v[2 * i + 1])) {
+            std::ostringstream sentence;
+            sentence << "Body '" << config_.name << "' has left the finite numbers at its node "
+                     << i << ", material point (" << config_.mesh.node[i].x() << ", "
+                     << config_.mesh.node[i].y()
+                     << "); the loads are too large for its stiffness or the window too long.";
+            throw std::runtime_error(sentence.str());
+        }
+    }
+}
+
+std::span<const double> Body::position() const {
+    return mechanics_ ? mechanics_->position() : std::span<const double>(rest_position_);
+}
+
+std::span<const double> Body::velocity() const {
+    return mechanics_ ? mechanics_->velocity() : std::span<const double>(rest_velocity_);
+}
+
+} // namespace duet::solid

@@ -1,0 +1,73 @@
+// One solid body: its mesh, its heat, and, if it is deformable, its mechanics.
+
+#pragma once
+
+#include "solid_solver/heat.hpp"
+#include "solid_solver/mechanics.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace duet::solid {
+
+class Body {
+  public:
+    /// Throws std::invalid_argument with a sentence if the mesh or a boundary condition is at
+    /// fault, or a deformable body lacks Young's modulus.
+    explicit Body(BodyConfig config);
+    Body(const Body&) = delete;
+    Body& operator=(const Body&) = delete;
+
+    const BodyConfig& config() const { return config_; }
+    const Domains& domains() const { return domains_; }
+    std::size_t nodes() const { return config_.mesh.node.size(); }
+    bool deformable() const { return mechanics_.has_value(); }
+
+    /// Constant loads from the interface from now on: heat [N] W/m and force [N][2] N/m.
+    void set_interface_load(std::span<const double> heat, std::span<const double> force);
+
+    /// Largest stable step, s: the smaller of the thermal and the (damped, adiabatic) mechanical
+    /// one; 0: no limit.
+    double stable_step() const;
+
+    /// One explicit step of length dt.
+    void step(double dt);
+
+    /// Advances by `length` in the least number of equal steps not longer than 0.9 of the stable
+    /// one; returns their number. Throws std::runtime_error naming body and node if the numbers
+    /// are no longer finite.
+    std::uint32_t advance(double length);
+
+    std::span<const double> temperature() const { return heat_.temperature(); } ///< [N] K
+    std::span<const double> position() const;                                   ///< [N][2] m
+    std::span<const double> velocity() const;                                   ///< [N][2] m/s
+
+    const Heat& heat() const { return heat_; }
+    Heat& heat() { return heat_; }
+    const std::optional<Mechanics>& mechanics() const { return mechanics_; }
+    std::optional<Mechanics>& mechanics() { return mechanics_; }
+
+    template <class Visit>
+    void visit_state(const Visit& visit) {
+        heat_.visit_state(visit);
+        if (mechanics_) {
+            mechanics_->visit_state(visit);
+        }
+        visit(steps_since_update_);
+    }
+
+  private:
+    void check_finite() const;
+
+    BodyConfig config_;
+    Domains domains_;
+    Heat heat_;
+    std::optional<Mechanics> mechanics_;
+    std::vector<double> rest_position_, rest_velocity_; ///< of a fixed body
+    double steps_since_update_ = 0;
+};
+
+} // namespace duet::solid

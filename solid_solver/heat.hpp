@@ -1,0 +1,93 @@
+// Heat of one body: lumped capacity, conduction, loads (24)-(31), explicit steps, exact accounts.
+
+#pragma once
+
+#include "solid_solver/body_config.hpp"
+#include "solid_solver/conduction.hpp"
+
+#include <span>
+#include <vector>
+
+namespace duet::solid {
+
+/// Heat that has come in since the start, by its way; J/m.
+struct HeatAccount {
+    double interface = 0;
+    double walls = 0;         ///< fluxes, convection, and what keeps prescribed temperatures
+    double sources = 0;       ///< body sources (28)
+    double thermoelastic = 0; ///< by compression (31)
+};
+
+class Heat {
+  public:
+    /// State: the initial temperature, with the prescribed ones already in their places.
+    Heat(const BodyConfig& body, const Domains& domains);
+
+    /// Constant heat flows into the nodes, W/m, from now on: [N].
+    void set_interface_heat(std::span<const double> nodal);
+
+    /// One explicit step. `thermoelastic`: W/m into each node by compression, or empty.
+    void step(double dt, std::span<const double> thermoelastic = {});
+
+    /// 2 / lambda_max of C^-1 (K + exchange); 0: no limit, nothing conducts.
+    double stable_step() const { return stable_step_; }
+
+    std::span<const double> temperature() const { return temperature_; }
+    std::span<const double> capacity() const { return capacity_; } ///< J/(m K)
+    const HeatAccount& account() const { return account_; }
+    /// J/m, held relative to the start: sum of C (T - T_start).
+    double stored() const;
+    /// sum of C T over sum of C.
+    double mean_temperature() const;
+
+    /// Replaces the temperatures [N]; the accounts start anew from them.
+    void set_temperature(std::span<const double> temperature);
+
+    /// The state, for save and restore: calls visit(vector or double&) on each part of it.
+    template <class Visit>
+    void visit_state(const Visit& visit) {
+        visit(temperature_);
+        visit(start_);
+        visit(account_.interface);
+        visit(account_.walls);
+        visit(account_.sources);
+        visit(account_.thermoelastic);
+    }
+
+  private:
+    struct Fixed {
+        std::uint32_t node;
+        double temperature;
+    };
+    struct Exchange { ///< convection, lumped on a node like its capacity
+        std::uint32_t node;
+        double coefficient; ///< W/(m K)
+        double temperature; ///< K, of the surroundings
+    };
+
+    void apply_boundary(const BodyConfig& body);
+    void collect_load();
+    double bound() const;
+
+    int threads_;
+    Conduction conduction_;
+    std::vector<double> capacity_;
+    std::vector<double> constant_;  ///< W/m: body source and boundary fluxes
+    std::vector<double> interface_; ///< W/m
+    std::vector<double> load_;      ///< their sum
+    std::vector<Fixed> fixed_;
+    std::vector<Exchange> exchange_;
+    double source_power_ = 0; ///< W/m
+    double flux_power_ = 0;
+    double interface_power_ = 0;
+    double stable_step_ = 0;
+
+    std::vector<double> temperature_;
+    std::vector<double> start_;
+    HeatAccount account_;
+
+    std::vector<double> next_, factor_, rate_; ///< work space
+    double factor_dt_ = 0;                     ///< the step that factor_ = dt/C holds
+};
+
+} // namespace duet::solid

@@ -1,0 +1,376 @@
+#include "solid_solver/mechanics.hpp"
+
+#include "solid_solver/parallel.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace duet::solid {
+
+namespace {
+constexpr std::size_t slots = Domains::slots;
+}
+
+double PlaneTensor::von_mises() const {
+    return std::sqrt(0.5 * ((xx - yy) * (xx - yy) + (yy - zz) * (yy - zz) + (zz - xx) * (zz - xx))
+                     + 3 * xy * xy);
+}
+
+Mechanics::Mechanics(const BodyConfig& body,
+                     const Domains& domains,
+                     std::span<const double> temperature,
+                     std::span<const double> capacity)
+    : domains_(domains), threads_(body.threads), lambda_(body.material.lambda()),
+      mu_(body.material.mu()), beta_(body.material.beta()),
+      reference_temperature_(body.reference_temperature), damping_(body.stiffness_damping),
+      heated_(body.thermoelastic_heating && beta_ * reference_temperature_ != 0),
+      capacity_(capacity.begin(), capacity.end()), spectrum_(2 * body.mesh.node.size()) {
+    const std::vector<double> area = nodal_area(body.mesh);
+    const std::size_t nodes = area.size();
+    mass_.resize(nodes);
+    for (std::size_t i = 0; i < nodes; ++i) {
+        mass_[i] = body.material.density * area[i];
+        for (int d = 0; d < 2; ++d) {
+            reference_.push_back(body.mesh.node[i][d]);
+            inverse_mass_.push_back(1 / mass_[i]);
+            constant_.push_back(mass_[i] * body.body_force[d]);
+            velocity_.push_back(body.initial_velocity[d]);
+        }
+    }
+    apply_boundary(body);
+    interface_.assign(2 * nodes, 0.0);
+    internal_.assign(2 * nodes, 0.0);
+    displacement_.resize(2 * nodes);
+    stress_.assign(3 * domains.size(), 0.0);
+    trace_.assign(domains.size(), 0.0);
+    contribution_.resize(2 * slots * domains.size());
+    heat_share_.resize(slots * domains.size());
+    nodal_change_.resize(nodes);
+    const std::vector<double> start = velocity_;
+    set_motion(displacement_, start, temperature);
+    frequency_ = std::sqrt(spectrum_.largest(
+        [this](const double* u, double* f) { apply_tangent(u, f); }, inverse_mass_));
+}
+
+void Mechanics::apply_boundary(const BodyConfig& body) {
+    const std::vector<Edge> boundary = boundary_edges(body.mesh);
+    for (const BoundaryCondition& condition : body.boundary) {
+        for (const Edge& edge : edges_of(condition, body, boundary)) {
+            const double half = 0.5 * (body.mesh.node[edge.b] - body.mesh.node[edge.a]).norm();
+            for (const std::uint32_t i : {edge.a, edge.b}) {
+                for (int d = 0; d < 2; ++d) {
+                    const std::size_t c = 2 * i + static_cast<std::size_t>(d);
+                    constant_[c] += condition.traction[d] * half;
+                    if (d == 0 ? condition.fixed_x : condition.fixed_y) {
+                        inverse_mass_[c] = 0;
+                    }
+                }
+            }
+        }
+    }
+}
+
+void Mechanics::set_motion(std::span<const double> displacement,
+                           std::span<const double> velocity,
+                           std::span<const double> temperature) {
+    position_ = reference_;
+    velocity_.assign(velocity.begin(), velocity.end());
+    for (std::size_t c = 0; c < position_.size(); ++c) {
+        if (inverse_mass_[c] == 0) {
+            velocity_[c] = 0;
+        } else {
+            position_[c] += displacement[c];
+        }
+    }
+    compute_forces(0, temperature); // no rate yet: the damping sets in with the first step
+    for (std::size_t k = 0; k < domains_.size(); ++k) {
+        const Gradient g = displacement_gradient(k, displacement_.data());
+        trace_[k] = g.xx + g.yy + 0.5 * (g.xx * g.xx + g.yx * g.yx + g.xy * g.xy + g.yy * g.yy);
+    }
+}
+
+void Mechanics::set_interface_force(std::span<const double> nodal) {
+    interface_.assign(nodal.begin(), nodal.end());
+    loaded_.clear();
+    for (std::uint32_t c = 0; c < interface_.size(); ++c) {
+        if (interface_[c] != 0) {
+            loaded_.push_back(c);
+        }
+    }
+}
+
+void Mechanics::kick(double half_step) {
+    for (std::size_t c = 0; c < velocity_.size(); ++c) {
+        velocity_[c] +=
+            half_step * inverse_mass_[c] * (constant_[c] + interface_[c] + internal_[c]);
+    }
+}
+
+void Mechanics::drift(double dt) {
+    kick(0.5 * dt);
+    for (std::size_t c = 0; c < position_.size(); ++c) {
+        position_[c] += dt * velocity_[c];
+    }
+    for (const std::uint32_t c : loaded_) {
+        work_ += interface_[c] * dt * velocity_[c];
+        impulse_[c % 2] += interface_[c] * dt;
+    }
+}
+
+void Mechanics::respond(double dt, std::span<const double> temperature) {
+    compute_forces(dt, temperature);
+    kick(0.5 * dt);
+}
+
+Mechanics::Gradient Mechanics::displacement_gradient(std::size_t k, const double* u) const {
+    const auto& node = domains_.node[k];
+    const auto &x = domains_.gradient_x[k], &y = domains_.gradient_y[k];
+    Gradient g{0, 0, 0, 0};
+    for (std::size_t s = 0; s < slots; ++s) {
+        const double ux = u[2 * node[s]], uy = u[2 * node[s] + 1];
+        g.xx += ux * x[s];
+        g.xy += ux * y[s];
+        g.yx += uy * x[s];
+        g.yy += uy * y[s];
+    }
+    return g;
+}
+
+double Mechanics::domain_temperature(std::size_t k, std::span<const double> temperature) const {
+    double mean = 0;
+    for (std::size_t s = 0; s < slots; ++s) {
+        mean += domains_.weight[k][s] * temperature[domains_.node[k][s]];
+    }
+    return mean;
+}
+
+/// S = lambda tr(E) I + 2 mu E - beta (T - T0) I, E = (g + g^T + g^T g)/2, g = F - I.
+PlaneTensor Mechanics::second_piola(const Gradient& g, double temperature) const {
+    const double exx = g.xx + 0.5 * (g.xx * g.xx + g.yx * g.yx);
+    const double eyy = g.yy + 0.5 * (g.xy * g.xy + g.yy * g.yy);
+    const double exy = 0.5 * (g.xy + g.yx + g.xx * g.xy + g.yx * g.yy);
+    const double mean = lambda_ * (exx + eyy) - beta_ * (temperature - reference_temperature_);
+    return {mean + 2 * mu_ * exx, mean + 2 * mu_ * eyy, 2 * mu_ * exy, mean};
+}
+
+/// The domain's share of -f_int: -A P gradN_I with P = F S, for each of its nodes (20).
+void Mechanics::put_force(std::size_t k, const Gradient& g, double sxx, double syy, double sxy) {
+    const double area = domains_.area[k];
+    const double fxx = 1 + g.xx, fyy = 1 + g.yy;
+    const double pxx = area * (fxx * sxx + g.xy * sxy), pxy = area * (fxx * sxy + g.xy * syy);
+    const double pyx = area * (g.yx * sxx + fyy * sxy), pyy = area * (g.yx * sxy + fyy * syy);
+    const auto &x = domains_.gradient_x[k], &y = domains_.gradient_y[k];
+    double* out = &contribution_[2 * slots * k];
+    for (std::size_t s = 0; s < slots; ++s) {
+        out[2 * s] = -(pxx * x[s] + pxy * y[s]);
+        out[2 * s + 1] = -(pyx * x[s] + pyy * y[s]);
+    }
+}
+
+/// nodal_I = sum of what the domains round I contribute, in the order of the domains.
+void Mechanics::gather(const std::vector<double>& contribution,
+                       double* nodal,
+                       int components) const {
+    const auto width = static_cast<std::size_t>(components);
+    in_pieces(domains_.first.size() - 1, threads_, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            for (std::size_t d = 0; d < width; ++d) {
+                double sum = 0;
+                for (std::uint32_t e = domains_.first[i]; e < domains_.first[i + 1]; ++e) {
+                    sum += contribution[width * domains_.entry[e] + d];
+                }
+                nodal[width * i + d] = sum;
+            }
+        }
+    });
+}
+
+/// Internal forces (20) and stiffness-proportional damping (63), its stress rate taken over the
+/// step that has just been made: P = F (S + b dS/dt).
+void Mechanics::compute_forces(double dt, std::span<const double> temperature) {
+    for (std::size_t c = 0; c < position_.size(); ++c) {
+        displacement_[c] = position_[c] - reference_[c];
+    }
+    const double per_step = dt > 0 ? damping_ / dt : 0;
+    in_pieces(domains_.size(), threads_, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const Gradient g = displacement_gradient(k, displacement_.data());
+            const PlaneTensor s = second_piola(g, domain_temperature(k, temperature));
+            double* old = &stress_[3 * k];
+            put_force(k,
+                      g,
+                      s.xx + per_step * (s.xx - old[0]),
+                      s.yy + per_step * (s.yy - old[1]),
+                      s.xy + per_step * (s.xy - old[2]));
+            old[0] = s.xx;
+            old[1] = s.yy;
+            old[2] = s.xy;
+        }
+    });
+    gather(contribution_, internal_.data(), 2);
+}
+
+std::span<const double> Mechanics::heating(double dt) {
+    if (!heated_) {
+        return {};
+    }
+    for (std::size_t c = 0; c < position_.size(); ++c) {
+        displacement_[c] = position_[c] - reference_[c];
+    }
+    const double factor = -beta_ * reference_temperature_ / dt;
+    in_pieces(domains_.size(), threads_, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const Gradient g = displacement_gradient(k, displacement_.data());
+            const double trace =
+                g.xx + g.yy + 0.5 * (g.xx * g.xx + g.yx * g.yx + g.xy * g.xy + g.yy * g.yy);
+            const double heat = factor * domains_.area[k] * (trace - trace_[k]);
+            trace_[k] = trace;
+            for (std::size_t s = 0; s < slots; ++s) {
+                heat_share_[slots * k + s] = heat * domains_.weight[k][s];
+            }
+        }
+    });
+    heating_.resize(mass_.size());
+    gather(heat_share_, heating_.data(), 1);
+    return heating_;
+}
+
+/// The change of f_int by a small displacement u at the present deformation and stress, with the
+/// temperature that the compression itself brings about: the adiabatic tangent, as the time
+/// stepping sees it (62).
+void Mechanics::apply_tangent(const double* u, double* force) {
+    const auto strain = [](const Gradient& g, const Gradient& d) {
+        return std::array<double, 3>{
+            (1 + g.xx) * d.xx + g.yx * d.yx,
+            g.xy * d.xy + (1 + g.yy) * d.yy,
+            0.5 * ((1 + g.xx) * d.xy + g.yx * d.yy + g.xy * d.xx + (1 + g.yy) * d.yx)};
+    };
+    if (heated_) {
+        for (std::size_t k = 0; k < domains_.size(); ++k) {
+            const auto e =
+                strain(displacement_gradient(k, displacement_.data()), displacement_gradient(k, u));
+            const double heat = -beta_ * reference_temperature_ * domains_.area[k] * (e[0] + e[1]);
+            for (std::size_t s = 0; s < slots; ++s) {
+                heat_share_[slots * k + s] = heat * domains_.weight[k][s];
+            }
+        }
+        gather(heat_share_, nodal_change_.data(), 1);
+        for (std::size_t i = 0; i < nodal_change_.size(); ++i) {
+            nodal_change_[i] /= capacity_[i];
+        }
+    }
+    for (std::size_t k = 0; k < domains_.size(); ++k) {
+        const Gradient g = displacement_gradient(k, displacement_.data());
+        const Gradient d = displacement_gradient(k, u);
+        const auto e = strain(g, d);
+        const double warming = heated_ ? domain_temperature(k, nodal_change_) : 0;
+        const double mean = lambda_ * (e[0] + e[1]) - beta_ * warming;
+        put_force(k, g, mean + 2 * mu_ * e[0], mean + 2 * mu_ * e[1], 2 * mu_ * e[2]);
+        // dF S: the stress that is there already, turned with the material.
+        const double* s = &stress_[3 * k];
+        const double area = domains_.area[k];
+        const double pxx = area * (d.xx * s[0] + d.xy * s[2]);
+        const double pxy = area * (d.xx * s[2] + d.xy * s[1]);
+        const double pyx = area * (d.yx * s[0] + d.yy * s[2]);
+        const double pyy = area * (d.yx * s[2] + d.yy * s[1]);
+        double* out = &contribution_[2 * slots * k];
+        for (std::size_t i = 0; i < slots; ++i) {
+            out[2 * i] -= pxx * domains_.gradient_x[k][i] + pxy * domains_.gradient_y[k][i];
+            out[2 * i + 1] -= pyx * domains_.gradient_x[k][i] + pyy * domains_.gradient_y[k][i];
+        }
+    }
+    gather(contribution_, force, 2);
+    for (std::size_t c = 0; c < position_.size(); ++c) {
+        force[c] = -force[c];
+    }
+}
+
+void Mechanics::update_frequency() {
+    const double now = std::sqrt(spectrum_.largest(
+        [this](const double* u, double* f) { apply_tangent(u, f); }, inverse_mass_, 10));
+    // Ten rounds from the last mode may fall a little short of the eigenvalue, so that a fall is
+    // taken up by and by.
+    frequency_ = std::max(now, 0.99 * frequency_);
+}
+
+double Mechanics::stable_step() const {
+    if (frequency_ == 0) {
+        return 0;
+    }
+    const double xi = 0.5 * damping_ * frequency_;
+    return 2 / frequency_ * (std::sqrt(1 + xi * xi) - xi);
+}
+
+double Mechanics::kinetic_energy() const {
+    double energy = 0;
+    for (std::size_t c = 0; c < velocity_.size(); ++c) {
+        energy += 0.5 * mass_[c / 2] * velocity_[c] * velocity_[c];
+    }
+    return energy;
+}
+
+double Mechanics::strain_energy() const {
+    double energy = 0;
+    std::vector<double> u(position_.size());
+    for (std::size_t c = 0; c < u.size(); ++c) {
+        u[c] = position_[c] - reference_[c];
+    }
+    for (std::size_t k = 0; k < domains_.size(); ++k) {
+        const Gradient g = displacement_gradient(k, u.data());
+        const double exx = g.xx + 0.5 * (g.xx * g.xx + g.yx * g.yx);
+        const double eyy = g.yy + 0.5 * (g.xy * g.xy + g.yy * g.yy);
+        const double exy = 0.5 * (g.xy + g.yx + g.xx * g.xy + g.yx * g.yy);
+        energy += domains_.area[k]
+                  * (0.5 * lambda_ * (exx + eyy) * (exx + eyy)
+                     + mu_ * (exx * exx + eyy * eyy + 2 * exy * exy));
+    }
+    return energy;
+}
+
+/// sigma = F S F^T / J; out of the plane F is one.
+PlaneTensor Mechanics::domain_stress(std::size_t k, std::span<const double> temperature) const {
+    Gradient g{0, 0, 0, 0};
+    for (std::size_t s = 0; s < slots; ++s) {
+        const std::size_t c = 2 * domains_.node[k][s];
+        const double ux = position_[c] - reference_[c], uy = position_[c + 1] - reference_[c + 1];
+        g.xx += ux * domains_.gradient_x[k][s];
+        g.xy += ux * domains_.gradient_y[k][s];
+        g.yx += uy * domains_.gradient_x[k][s];
+        g.yy += uy * domains_.gradient_y[k][s];
+    }
+    const PlaneTensor s = second_piola(g, domain_temperature(k, temperature));
+    const double fxx = 1 + g.xx, fyy = 1 + g.yy;
+    const double jacobian = fxx * fyy - g.xy * g.yx;
+    const double pxx = fxx * s.xx + g.xy * s.xy, pxy = fxx * s.xy + g.xy * s.yy;
+    const double pyx = g.yx * s.xx + fyy * s.xy, pyy = g.yx * s.xy + fyy * s.yy;
+    return {(pxx * fxx + pxy * g.xy) / jacobian,
+            (pyx * g.yx + pyy * fyy) / jacobian,
+            (pxx * g.yx + pxy * fyy) / jacobian,
+            s.zz / jacobian};
+}
+
+std::vector<PlaneTensor> Mechanics::nodal_stress(std::span<const double> temperature) const {
+    std::vector<PlaneTensor> nodal(mass_.size());
+    std::vector<double> area(mass_.size(), 0.0);
+    for (std::size_t k = 0; k < domains_.size(); ++k) {
+        const PlaneTensor s = domain_stress(k, temperature);
+        for (std::size_t i = 0; i < slots; ++i) {
+            const std::uint32_t node = domains_.node[k][i];
+            const double share = domains_.area[k] * domains_.weight[k][i];
+            area[node] += share;
+            nodal[node].xx += share * s.xx;
+            nodal[node].yy += share * s.yy;
+            nodal[node].xy += share * s.xy;
+            nodal[node].zz += share * s.zz;
+        }
+    }
+    for (std::size_t i = 0; i < nodal.size(); ++i) {
+        nodal[i] = {nodal[i].xx / area[i],
+                    nodal[i].yy / area[i],
+                    nodal[i].xy / area[i],
+                    nodal[i].zz / area[i]};
+    }
+    return nodal;
+}
+
+} // namespace duet::solid

@@ -1,0 +1,126 @@
+// Thermo-elastic mechanics of one body: total Lagrangian St Venant-Kirchhoff on smoothing domains,
+// lumped mass, explicit central difference.
+
+#pragma once
+
+#include "solid_solver/body_config.hpp"
+#include "solid_solver/spectrum.hpp"
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace duet::solid {
+
+/// A symmetric tensor of plane strain, e.g. a stress: xx, yy, xy, and zz out of the plane.
+struct PlaneTensor {
+    double xx = 0, yy = 0, xy = 0, zz = 0;
+    double von_mises() const;
+};
+
+class Mechanics {
+  public:
+    /// At rest in the reference positions but for the initial velocity, at `temperature` [N].
+    /// `domains` must outlive this.
+    Mechanics(const BodyConfig& body,
+              const Domains& domains,
+              std::span<const double> temperature,
+              std::span<const double> capacity);
+
+    /// Constant forces on the nodes [N][2], N/m, from now on.
+    void set_interface_force(std::span<const double> nodal);
+
+    // A step from t to t + dt is drift, heating, (the heat's own step,) respond.
+    // Velocities are kept at whole steps: v += dt/2 a, x += dt v, new a, v += dt/2 a.
+
+    /// Half a kick with the forces at t, then positions at t + dt.
+    void drift(double dt);
+    /// W/m into each node by the compression of this step, -beta T0 tr(E_dot) (31).
+    std::span<const double> heating(double dt);
+    /// Forces at t + dt from the new positions and temperatures, and the other half of the kick.
+    void respond(double dt, std::span<const double> temperature);
+
+    /// (2/w) (sqrt(1 + xi^2) - xi), xi = b w/2, with the largest adiabatic frequency w at the last
+    /// estimate.
+    double stable_step() const;
+    /// Takes up the present deformation into the largest frequency (a few rounds only).
+    void update_frequency();
+    double largest_frequency() const { return frequency_; } ///< rad/s
+
+    std::span<const double> position() const { return position_; }       ///< [N][2] m
+    std::span<const double> velocity() const { return velocity_; }       ///< [N][2] m/s
+    std::span<const double> mass() const { return mass_; }               ///< [N] kg/m
+    std::array<double, 2> interface_impulse() const { return impulse_; } ///< N s/m since the start
+    double interface_work() const { return work_; }                      ///< J/m since the start
+    double kinetic_energy() const;                                       ///< J/m
+    double strain_energy() const; ///< J/m, without the thermal part of the stress
+
+    /// Cauchy stress in domain k.
+    PlaneTensor domain_stress(std::size_t domain, std::span<const double> temperature) const;
+    /// Area-weighted mean of the domains round each node [N].
+    std::vector<PlaneTensor> nodal_stress(std::span<const double> temperature) const;
+
+    /// Replaces the state: displacement and velocity [N][2].
+    void set_motion(std::span<const double> displacement,
+                    std::span<const double> velocity,
+                    std::span<const double> temperature);
+
+    template <class Visit>
+    void visit_state(const Visit& visit) {
+        visit(position_);
+        visit(velocity_);
+        visit(internal_);
+        visit(stress_);
+        visit(trace_);
+        visit(impulse_[0]);
+        visit(impulse_[1]);
+        visit(work_);
+        visit(frequency_);
+        visit(spectrum_.mode());
+    }
+
+  private:
+    /// F - I of a domain: f[i][j] = du_i/dX_j.
+    struct Gradient {
+        double xx, xy, yx, yy;
+    };
+    Gradient displacement_gradient(std::size_t domain, const double* displacement) const;
+    double domain_temperature(std::size_t domain, std::span<const double> temperature) const;
+    PlaneTensor second_piola(const Gradient& g, double temperature) const;
+    void put_force(std::size_t domain, const Gradient& g, double sxx, double syy, double sxy);
+    void gather(const std::vector<double>& contribution, double* nodal, int components) const;
+    void compute_forces(double dt, std::span<const double> temperature);
+    void apply_tangent(const double* u, double* force);
+    void apply_boundary(const BodyConfig& body);
+    void kick(double half_step);
+
+    const Domains& domains_;
+    int threads_;
+    double lambda_, mu_, beta_, reference_temperature_, damping_;
+    bool heated_; ///< thermo-elastic heating is on and not zero
+
+    std::vector<double> reference_;     ///< [N][2] m
+    std::vector<double> mass_;          ///< [N]
+    std::vector<double> inverse_mass_;  ///< [N][2], zero where held
+    std::vector<double> capacity_;      ///< [N] J/(m K)
+    std::vector<double> constant_;      ///< [N][2] N/m: body force and traction
+    std::vector<double> interface_;     ///< [N][2] N/m
+    std::vector<std::uint32_t> loaded_; ///< components of interface_ that are not zero
+
+    std::vector<double> position_, velocity_; ///< [N][2]
+    std::vector<double> internal_; ///< [N][2] N/m, -(f_int + f_damp) at the last positions
+    std::vector<double> stress_;   ///< [K][3] second Piola-Kirchhoff, xx, yy, xy
+    std::vector<double> trace_;    ///< [K] tr(E) at the last call of heating
+    std::array<double, 2> impulse_{};
+    double work_ = 0;
+    double frequency_ = 0;
+    Spectrum spectrum_;
+
+    std::vector<double> displacement_; ///< [N][2] work space
+    std::vector<double> contribution_; ///< [K][slots][2]
+    std::vector<double> heat_share_;   ///< [K][slots]
+    std::vector<double> heating_;      ///< [N]
+    std::vector<double> nodal_change_; ///< [N]
+};
+
+} // namespace duet::solid

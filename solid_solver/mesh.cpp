@@ -1,0 +1,249 @@
+#include "solid_solver/mesh.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+
+namespace duet::solid {
+
+namespace {
+
+[[noreturn]] void refuse(const std::ostringstream& sentence) {
+    throw std::invalid_argument(sentence.str());
+}
+
+std::string place(const Point& point) {
+    std::ostringstream text;
+    text << '(' << point.x() << ", " << point.y() << ')';
+    return text.str();
+}
+
+/// One side of a triangle, as met when walking round it.
+struct Side {
+    std::uint32_t low, high, triangle;
+    bool forward; ///< walked from low to high
+};
+
+std::vector<Side> sorted_sides(const Mesh& mesh) {
+    std::vector<Side> sides;
+    sides.reserve(3 * mesh.triangle.size());
+    for (std::uint32_t e = 0; e < mesh.triangle.size(); ++e) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::uint32_t a = mesh.triangle[e][i], b = mesh.triangle[e][(i + 1) % 3];
+            sides.push_back({std::min(a, b), std::max(a, b), e, a < b});
+        }
+    }
+    std::sort(sides.begin(), sides.end(), [](const Side& s, const Side& t) {
+        return std::tie(s.low, s.high, s.triangle) < std::tie(t.low, t.high, t.triangle);
+    });
+    return sides;
+}
+
+void check_triangles(const Mesh& mesh) {
+    if (mesh.triangle.empty()) {
+        throw std::invalid_argument("The mesh has no triangles.");
+    }
+    std::vector<bool> used(mesh.node.size(), false);
+    for (std::size_t e = 0; e < mesh.triangle.size(); ++e) {
+        double longest = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::uint32_t a = mesh.triangle[e][i];
+            if (a >= mesh.node.size()) {
+                std::ostringstream sentence;
+                sentence << "Triangle " << e << " names node " << a << ", but the mesh has only "
+                         << mesh.node.size() << " nodes.";
+                refuse(sentence);
+            }
+            used[a] = true;
+        }
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Point side =
+                mesh.node[mesh.triangle[e][(i + 1) % 3]] - mesh.node[mesh.triangle[e][i]];
+            longest = std::max(longest, side.squaredNorm());
+        }
+        // Below this the area is lost in the rounding of the coordinates.
+        if (!(triangle_area(mesh, mesh.triangle[e]) > 1e-12 * longest)) {
+            std::ostringstream sentence;
+            sentence << "Triangle " << e << " at " << place(mesh.node[mesh.triangle[e][0]])
+                     << " is inverted or has no area; its nodes must run counter-clockwise.";
+            refuse(sentence);
+        }
+    }
+    for (std::size_t i = 0; i < mesh.node.size(); ++i) {
+        if (!used[i] || !mesh.node[i].allFinite()) {
+            std::ostringstream sentence;
+            sentence << "Node " << i << " at " << place(mesh.node[i])
+                     << (used[i] ? " is not a finite place."
+                                 : " belongs to no triangle; remove it.");
+            refuse(sentence);
+        }
+    }
+}
+
+void check_duplicates(const Mesh& mesh, double tolerance) {
+    std::vector<std::uint32_t> order(mesh.node.size());
+    for (std::uint32_t i = 0; i < order.size(); ++i) {
+        order[i] = i;
+    }
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return mesh.node[a].x() < mesh.node[b].x();
+    });
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        const Point& p = mesh.node[order[i]];
+        for (std::size_t j = i + 1; j < order.size(); ++j) {
+            const Point& q = mesh.node[order[j]];
+            if (q.x() - p.x() > tolerance) {
+                break;
+            }
+            if (std::abs(q.y() - p.y()) <= tolerance) {
+                std::ostringstream sentence;
+                sentence << "Nodes " << order[i] << " and " << order[j] << " lie in the same place "
+                         << place(p) << "; merge them.";
+                refuse(sentence);
+            }
+        }
+    }
+}
+
+void check_edges(const Mesh& mesh) {
+    const std::vector<Side> sides = sorted_sides(mesh);
+    for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
+        const Side &s = sides[i], &t = sides[i + 1];
+        if (s.low == t.low && s.high == t.high && s.forward == t.forward) {
+            std::ostringstream sentence;
+            sentence << "Triangles " << s.triangle << " and " << t.triangle
+                     << " lie on the same side of their common edge from "
+                     << place(mesh.node[s.low]) << " to " << place(mesh.node[s.high])
+                     << "; an edge may have one triangle on either side.";
+            refuse(sentence);
+        }
+    }
+}
+
+/// Each boundary node has one boundary edge in and one out, and lies on no other boundary edge.
+void check_boundary(const Mesh& mesh, double tolerance) {
+    const std::vector<Edge> boundary = boundary_edges(mesh);
+    std::vector<int> leaving(mesh.node.size(), 0);
+    std::vector<std::uint32_t> order;
+    for (const Edge& edge : boundary) {
+        order.push_back(edge.a);
+        if (++leaving[edge.a] > 1) {
+            std::ostringstream sentence;
+            sentence << "The boundary meets itself in node " << edge.a << " at "
+                     << place(mesh.node[edge.a]) << "; two triangles must share an edge there.";
+            refuse(sentence);
+        }
+    }
+    const auto before = [&](std::uint32_t i, double x) { return mesh.node[i].x() < x; };
+    std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
+        return mesh.node[i].x() < mesh.node[j].x();
+    });
+    for (const Edge& edge : boundary) {
+        const Point &a = mesh.node[edge.a], &b = mesh.node[edge.b];
+        const Point along = (b - a).normalized();
+        const double length = (b - a).norm();
+        auto i = std::lower_bound(
+            order.begin(), order.end(), std::min(a.x(), b.x()) - tolerance, before);
+        for (; i != order.end() && mesh.node[*i].x() <= std::max(a.x(), b.x()) + tolerance; ++i) {
+            const Point from_a = mesh.node[*i] - a;
+            const double s = from_a.dot(along);
+            const double off = std::abs(from_a.x() * along.y() - from_a.y() * along.x());
+            if (s > tolerance && s < length - tolerance && off < tolerance) {
+                std::ostringstream sentence;
+                sentence << "Node " << *i << " at " << place(mesh.node[*i])
+                         << " hangs on the edge from " << place(a) << " to " << place(b)
+                         << "; split the triangle behind that edge.";
+                refuse(sentence);
+            }
+        }
+    }
+}
+
+} // namespace
+
+Mesh rectangle_mesh(const Point& corner, double width, double height, double element_size) {
+    if (!(width > 0 && height > 0 && element_size > 0)) {
+        throw std::invalid_argument(
+            "A rectangle's width, height and element size must be positive.");
+    }
+    const auto cells = [&](double side) {
+        return static_cast<std::uint32_t>(std::max(1.0, std::round(side / element_size)));
+    };
+    const std::uint32_t nx = cells(width), ny = cells(height);
+    Mesh mesh;
+    mesh.node.reserve((nx + 1) * (ny + 1));
+    for (std::uint32_t j = 0; j <= ny; ++j) {
+        for (std::uint32_t i = 0; i <= nx; ++i) {
+            mesh.node.emplace_back(corner.x() + width * i / nx, corner.y() + height * j / ny);
+        }
+    }
+    mesh.triangle.reserve(2 * nx * ny);
+    for (std::uint32_t j = 0; j < ny; ++j) {
+        for (std::uint32_t i = 0; i < nx; ++i) {
+            const std::uint32_t a = j * (nx + 1) + i, b = a + 1, d = a + nx + 1, c = d + 1;
+            if ((i + j) % 2 == 0) {
+                mesh.triangle.push_back({a, b, c});
+                mesh.triangle.push_back({a, c, d});
+            } else {
+                mesh.triangle.push_back({a, b, d});
+                mesh.triangle.push_back({b, c, d});
+            }
+        }
+    }
+    return mesh;
+}
+
+void check_mesh(const Mesh& mesh) {
+    check_triangles(mesh);
+    Point low = mesh.node.front(), high = low;
+    for (const Point& p : mesh.node) {
+        low = low.cwiseMin(p);
+        high = high.cwiseMax(p);
+    }
+    const double tolerance = 1e-10 * (high - low).norm(); // far below any edge that makes sense
+    check_duplicates(mesh, tolerance);
+    check_edges(mesh);
+    check_boundary(mesh, tolerance);
+}
+
+std::vector<Edge> mesh_edges(const Mesh& mesh) {
+    const std::vector<Side> sides = sorted_sides(mesh);
+    std::vector<Edge> edges;
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+        const Side& s = sides[i];
+        Edge edge;
+        edge.a = s.forward ? s.low : s.high;
+        edge.b = s.forward ? s.high : s.low;
+        edge.triangle[0] = s.triangle;
+        if (i + 1 < sides.size() && sides[i + 1].low == s.low && sides[i + 1].high == s.high) {
+            edge.triangle[1] = sides[++i].triangle;
+        }
+        edges.push_back(edge);
+    }
+    return edges;
+}
+
+std::vector<Edge> boundary_edges(const Mesh& mesh) {
+    std::vector<Edge> edges = mesh_edges(mesh);
+    std::erase_if(edges, [](const Edge& edge) { return !edge.boundary(); });
+    return edges;
+}
+
+double triangle_area(const Mesh& mesh, const Triangle& triangle) {
+    const Point ab = mesh.node[triangle[1]] - mesh.node[triangle[0]];
+    const Point ac = mesh.node[triangle[2]] - mesh.node[triangle[0]];
+    return 0.5 * (ab.x() * ac.y() - ab.y() * ac.x());
+}
+
+double mesh_area(const Mesh& mesh) {
+    double area = 0;
+    for (const Triangle& triangle : mesh.triangle) {
+        area += triangle_area(mesh, triangle);
+    }
+    return area;
+}
+
+} // namespace duet::solid

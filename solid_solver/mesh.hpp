@@ -1,0 +1,54 @@
+// Triangle meshes: what a body is made of.
+
+#pragma once
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace duet::solid {
+
+using Point = Eigen::Vector2d;
+using Triangle = std::array<std::uint32_t, 3>; ///< nodes, counter-clockwise
+
+struct Mesh {
+    std::vector<Point> node; ///< m, reference positions
+    std::vector<Triangle> triangle;
+};
+
+/// An edge of the mesh. `triangle[0]` lies to the left of the way from `a` to `b`; a boundary edge
+/// has no `triangle[1]`, so that the body lies to its left and the outside to its right.
+struct Edge {
+    static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+    std::uint32_t a = 0;
+    std::uint32_t b = 0;
+    std::array<std::uint32_t, 2> triangle{none, none};
+    bool boundary() const { return triangle[1] == none; }
+};
+
+/// Rectangle [corner, corner + (width, height)] cut into squares of about `element_size` (the
+/// nearest number of whole cells along each side), each into two triangles by diagonals that
+/// alternate like a chessboard: no direction is preferred, and the mesh is its own mirror image
+/// where the number of cells is even. Nodes are numbered row by row from the lower left.
+/// Throws std::invalid_argument if a length is not positive.
+Mesh rectangle_mesh(const Point& corner, double width, double height, double element_size);
+
+/// Throws std::invalid_argument with a sentence if the mesh cannot be computed with: an index out
+/// of range, a coordinate that is not finite, a triangle that is inverted or has no area, a node
+/// that no triangle uses, two nodes in the same place, an edge with more than two triangles, a node
+/// lying on an edge that it does not belong to (hanging), a boundary that meets itself in a node.
+void check_mesh(const Mesh& mesh);
+
+/// All edges, sorted by their nodes; of a mesh that check_mesh accepts.
+std::vector<Edge> mesh_edges(const Mesh& mesh);
+
+/// The boundary edges alone, the body to their left.
+std::vector<Edge> boundary_edges(const Mesh& mesh);
+
+double triangle_area(const Mesh& mesh, const Triangle& triangle);
+double mesh_area(const Mesh& mesh);
+
+} // namespace duet::solid
