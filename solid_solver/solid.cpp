@@ -1,0 +1,103 @@
+#include "solid_solver/solid.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace duet::solid {
+
+Solid::Solid(std::vector<BodyConfig> bodies, const std::vector<Point>& region) {
+    std::vector<BodyShape> shapes;
+    for (BodyConfig& config : bodies) {
+        bodies_.emplace_back(std::move(config));
+        const Body& body = bodies_.back();
+        shapes.push_back({body.config().name, &body.config().mesh});
+        nodal_heat_.emplace_back(body.nodes(), 0.0);
+        nodal_force_.emplace_back(2 * body.nodes(), 0.0);
+    }
+    if (!region.empty()) {
+        interface_ = wet_interface(shapes, region);
+    }
+}
+
+std::uint32_t
+Solid::advance(double length, std::span<const double> force, std::span<const double> heat_flow) {
+    set_loads(force, heat_flow);
+    std::uint32_t steps = 0;
+    for (Body& body : bodies_) {
+        steps = std::max(steps, body.advance(length));
+    }
+    book(length, force, heat_flow);
+    return steps;
+}
+
+void Solid::set_loads(std::span<const double> force, std::span<const double> heat_flow) {
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+        std::fill(nodal_heat_[b].begin(), nodal_heat_[b].end(), 0.0);
+    }
+    for (std::size_t j = 0; j < heat_flow.size(); ++j) {
+        for (const std::uint32_t end : {interface_.segment[j].a, interface_.segment[j].b}) {
+            const Interface::Node& node = interface_.node[end];
+            nodal_heat_[node.body][node.node] += 0.5 * heat_flow[j];
+        }
+    }
+    for (std::size_t i = 0; 2 * i < force.size(); ++i) {
+        const Interface::Node& node = interface_.node[i];
+        nodal_force_[node.body][2 * node.node] = force[2 * i];
+        nodal_force_[node.body][2 * node.node + 1] = force[2 * i + 1];
+    }
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+        bodies_[b].set_interface_load(nodal_heat_[b], nodal_force_[b]);
+    }
+}
+
+void Solid::book(double length, std::span<const double> force, std::span<const double> heat_flow) {
+    double heat = 0, absolute_heat = 0;
+    for (const double flow : heat_flow) {
+        heat += flow;
+        absolute_heat += std::abs(flow);
+    }
+    double fx = 0, fy = 0, absolute_force = 0;
+    for (std::size_t i = 0; 2 * i < force.size(); ++i) {
+        fx += force[2 * i];
+        fy += force[2 * i + 1];
+        absolute_force += std::hypot(force[2 * i], force[2 * i + 1]);
+    }
+    account_.heat += heat * length;
+    account_.exchanged_heat += absolute_heat * length;
+    account_.impulse_x += fx * length;
+    account_.impulse_y += fy * length;
+    account_.exchanged_impulse += absolute_force * length;
+}
+
+void Solid::interface_state(std::vector<double>& position,
+                            std::vector<double>& velocity,
+                            std::vector<double>& temperature) const {
+    const std::size_t nodes = interface_.node.size();
+    position.resize(2 * nodes);
+    velocity.resize(2 * nodes);
+    temperature.resize(nodes);
+    for (std::size_t i = 0; i < nodes; ++i) {
+        const Interface::Node& node = interface_.node[i];
+        const Body& body = bodies_[node.body];
+        for (std::size_t d = 0; d < 2; ++d) {
+            position[2 * i + d] = body.position()[2 * node.node + d];
+            velocity[2 * i + d] = body.velocity()[2 * node.node + d];
+        }
+        temperature[i] = body.temperature()[node.node];
+    }
+}
+
+double Solid::exchange_limit(double conductivity, double spacing) const {
+    double limit = 0;
+    for (const Interface::Segment& segment : interface_.segment) {
+        const Interface::Node &a = interface_.node[segment.a], &b = interface_.node[segment.b];
+        const BodyConfig& body = bodies_[a.body].config();
+        const double edge = (body.mesh.node[b.node] - body.mesh.node[a.node]).norm();
+        const double layer = body.material.density * body.material.heat_capacity * edge / 2;
+        const double window = layer * (spacing / 2) / conductivity;
+        limit = limit == 0 ? window : std::min(limit, window);
+    }
+    return conductivity > 0 ? limit : 0;
+}
+
+} // namespace duet::solid

@@ -1,0 +1,74 @@
+// All solid bodies of a scene and their interface with the fluid.
+
+#pragma once
+
+#include "solid_solver/body.hpp"
+#include "solid_solver/interface.hpp"
+
+#include <deque>
+#include <span>
+#include <vector>
+
+namespace duet::solid {
+
+/// What has passed through the interface since the start.
+struct InterfaceAccount {
+    double heat = 0;           ///< J/m, into the solid
+    double exchanged_heat = 0; ///< J/m, sum of absolute values over segments and windows
+    double impulse_x = 0;      ///< N s/m, on the solid, held or not
+    double impulse_y = 0;
+    double exchanged_impulse = 0; ///< N s/m, sum of absolute values over nodes and windows
+};
+
+class Solid {
+  public:
+    /// `region`: corners of the fluid's cavity; empty: there is no fluid, and no interface.
+    /// Throws std::invalid_argument with a sentence.
+    Solid(std::vector<BodyConfig> bodies, const std::vector<Point>& region);
+
+    std::deque<Body>& bodies() { return bodies_; }
+    const std::deque<Body>& bodies() const { return bodies_; }
+    const Interface& interface() const { return interface_; }
+
+    /// Advances all bodies by `length` under constant loads: force [nodes][2] N/m and heat_flow
+    /// [segments] W/m of the interface, both into the solid. A segment's heat goes in halves to its
+    /// nodes: the linear shape functions under a uniform flux (55). Returns the largest
+    /// number of steps that a body took.
+    std::uint32_t
+    advance(double length, std::span<const double> force, std::span<const double> heat_flow);
+
+    /// State of the interface: position [N][2], velocity [N][2], temperature [N].
+    void interface_state(std::vector<double>& position,
+                         std::vector<double>& velocity,
+                         std::vector<double>& temperature) const;
+
+    /// Longest window for which the first layer of nodes cannot overshoot against a fluid of
+    /// conductivity `conductivity` and particle spacing `spacing` (method, section 3):
+    /// rho c dx_s/2 >= window k_f / (dx/2), dx_s the length of a wet edge. 0: no limit.
+    double exchange_limit(double conductivity, double spacing) const;
+
+    const InterfaceAccount& account() const { return account_; }
+
+    template <class Visit>
+    void visit_state(const Visit& visit) {
+        for (Body& body : bodies_) {
+            body.visit_state(visit);
+        }
+        visit(account_.heat);
+        visit(account_.exchanged_heat);
+        visit(account_.impulse_x);
+        visit(account_.impulse_y);
+        visit(account_.exchanged_impulse);
+    }
+
+  private:
+    void set_loads(std::span<const double> force, std::span<const double> heat_flow);
+    void book(double length, std::span<const double> force, std::span<const double> heat_flow);
+
+    std::deque<Body> bodies_; // a deque: bodies stay where they are
+    Interface interface_;
+    std::vector<std::vector<double>> nodal_heat_, nodal_force_; ///< of each body
+    InterfaceAccount account_;
+};
+
+} // namespace duet::solid
