@@ -1,0 +1,161 @@
+#include "protocol/control_link.hpp"
+
+#include "protocol/solver.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <string_view>
+#include <unistd.h>
+
+namespace duet::protocol {
+
+namespace {
+
+constexpr auto grace = std::chrono::seconds(2);
+
+// Over the inproc pair, a single frame is a message as it travels; an empty one from the solver's
+// thread means stop, two frames from the link's thread mean that the orchestrator is gone (the
+// second says how).
+zmq::message_t serialize(const v1::ToOrchestrator& message) {
+    zmq::message_t frame(message.ByteSizeLong());
+    message.SerializeToArray(frame.data(), static_cast<int>(frame.size()));
+    return frame;
+}
+
+zmq::socket_t inproc_end(zmq::context_t& context) {
+    zmq::socket_t socket = bounded_socket(context, zmq::socket_type::pair);
+    socket.set(zmq::sockopt::sndhwm, 0);
+    socket.set(zmq::sockopt::rcvhwm, 0);
+    return socket;
+}
+
+} // namespace
+
+ControlLink::ControlLink(zmq::context_t& context, const std::string& address)
+    : near_(inproc_end(context)), far_(inproc_end(context)),
+      dealer_(bounded_socket(context, zmq::socket_type::dealer)), monitor_(context, dealer_) {
+    near_.bind("inproc://control");
+    far_.connect("inproc://control");
+    try {
+        dealer_.connect(address);
+    } catch (const zmq::error_t& error) {
+        throw Error(v1::Failed::PEER,
+                    "Cannot connect to '" + address + "' (" + error.what()
+                        + "); give the address that the orchestrator printed, ipc://... or "
+                          "tcp://host:port.");
+    }
+    thread_ = std::thread([this] { run(); });
+}
+
+ControlLink::~ControlLink() {
+    (void)near_.send(zmq::message_t(), zmq::send_flags::none);
+    thread_.join();
+}
+
+void ControlLink::send(const v1::ToOrchestrator& message) {
+    (void)near_.send(serialize(message), zmq::send_flags::none);
+}
+
+std::optional<v1::ToSolver> ControlLink::receive(Clock::time_point deadline) {
+    heed();
+    while (inbox_.empty()) {
+        if (Clock::now() >= deadline)
+            return std::nullopt;
+        zmq::pollitem_t item{near_.handle(), 0, ZMQ_POLLIN, 0};
+        zmq::poll(&item, 1, until(deadline));
+        heed();
+    }
+    std::optional<v1::ToSolver> message = std::move(inbox_.front());
+    inbox_.pop_front();
+    return message;
+}
+
+void ControlLink::heed() {
+    zmq::message_t frame;
+    while (near_.recv(frame, zmq::recv_flags::dontwait)) {
+        if (frame.more()) {
+            (void)near_.recv(frame, zmq::recv_flags::none);
+            throw Aborted(frame.to_string());
+        }
+        v1::ToSolver& message = inbox_.emplace_back();
+        if (!message.ParseFromArray(frame.data(), static_cast<int>(frame.size())))
+            throw Error(v1::Failed::PEER,
+                        "The orchestrator sent bytes that are no message of the protocol.");
+        if (message.has_abort())
+            throw Aborted(message.abort().text());
+    }
+}
+
+void ControlLink::run() {
+    auto next_beat = Clock::now();
+    while (!stopping_) {
+        if (Clock::now() >= next_beat && !ending_) {
+            beat();
+            const std::chrono::duration<double> interval(pulse_.interval.load());
+            next_beat = Clock::now() + std::chrono::duration_cast<Clock::duration>(interval);
+        }
+        zmq::pollitem_t items[] = {{far_.handle(), 0, ZMQ_POLLIN, 0},
+                                   {monitor_.socket().handle(), 0, ZMQ_POLLIN, 0},
+                                   {dealer_.handle(), 0, ZMQ_POLLIN, 0}};
+        // Once ending, nothing more can come from the orchestrator that matters.
+        zmq::poll(items, ending_ ? 1 : 3, until(ending_ ? last_moment_ : next_beat));
+        forward_to_orchestrator();
+        if (ending_ && !stopping_ && Clock::now() >= last_moment_) {
+            std::fprintf(stderr,
+                         "%s The solver did not come back in time; its process ends.\n",
+                         reason_.c_str());
+            _exit(1);
+        }
+        if (!ending_)
+            forward_to_solver();
+    }
+}
+
+void ControlLink::forward_to_orchestrator() {
+    zmq::message_t frame;
+    while (!stopping_ && far_.recv(frame, zmq::recv_flags::dontwait)) {
+        if (frame.size() == 0)
+            stopping_ = true;
+        else if (!ending_ && !dealer_.send(frame, zmq::send_flags::none))
+            end("The orchestrator takes no messages; it hangs or was stopped.");
+    }
+}
+
+void ControlLink::forward_to_solver() {
+    monitor_.update();
+    const bool lost = monitor_.ever_open() && !monitor_.any_open();
+    zmq::message_t frame;
+    while (!ending_ && dealer_.recv(frame, zmq::recv_flags::dontwait)) {
+        v1::ToSolver message;
+        if (message.ParseFromArray(frame.data(), static_cast<int>(frame.size()))
+            && message.has_abort())
+            end(message.abort().text());
+        else
+            (void)far_.send(frame, zmq::send_flags::none);
+    }
+    if (lost && !ending_)
+        end("The orchestrator has closed the connection.");
+}
+
+void ControlLink::beat() {
+    // Before the connection is up, heartbeats would only pile up.
+    if (!monitor_.any_open())
+        return;
+    v1::ToOrchestrator message;
+    v1::Heartbeat& heartbeat = *message.mutable_heartbeat();
+    heartbeat.set_window(pulse_.window);
+    heartbeat.set_time(pulse_.time);
+    heartbeat.set_phase(pulse_.phase);
+    (void)dealer_.send(serialize(message), zmq::send_flags::dontwait);
+}
+
+void ControlLink::end(const std::string& reason) {
+    ending_ = true;
+    reason_ = reason;
+    last_moment_ = Clock::now() + grace;
+    constexpr std::string_view gone = "gone";
+    (void)far_.send(zmq::buffer(gone), zmq::send_flags::sndmore);
+    (void)far_.send(zmq::buffer(reason), zmq::send_flags::none);
+}
+
+} // namespace duet::protocol

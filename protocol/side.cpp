@@ -1,0 +1,108 @@
+#include "protocol/side.hpp"
+
+#include <utility>
+
+namespace duet::protocol {
+
+namespace {
+
+/// A checkpoint's copy of interface data bears no run, and the time it stands for.
+Stamp checkpoint_stamp(const v1::Checkpoint& checkpoint, double time, double length) {
+    return {0, false, {checkpoint.window(), time, length}};
+}
+
+/// position + length * velocity; velocity and temperature as they are.
+void extrapolate(const InterfaceMotion& start, const Window& window, InterfaceMotion& end) {
+    end = start; // same sizes: no allocation after the first window
+    end.time = window.time + window.length;
+    for (std::size_t i = 0; i < end.position.size(); ++i)
+        end.position[i] += window.length * start.velocity[i];
+}
+
+} // namespace
+
+void SolidSide::configure(const v1::Configure& configure, Exchange* exchange, v1::Ready& ready) {
+    std::vector<Chain> chains;
+    solid_.configure(configure, ready, chains, motion_);
+    motion_.time = 0;
+    if (exchange != nullptr) {
+        exchange->send_start(chains, motion_);
+        size_ = exchange->size();
+    }
+    ready.set_nodes(size_.nodes);
+    ready.set_segments(size_.segments);
+    load_.force.assign(2 * size_.nodes, 0);
+    load_.heat_flow.assign(size_.segments, 0);
+}
+
+void SolidSide::receive(const Window& window, Exchange& exchange) {
+    exchange.receive(window, load_);
+}
+
+void SolidSide::advance(const Window& window, v1::Report& report) {
+    solid_.advance(window, load_, motion_, report);
+    motion_.time = window.time + window.length;
+}
+
+void SolidSide::send(const Window& window, Exchange& exchange) {
+    exchange.send(window, motion_);
+}
+
+void SolidSide::store(v1::Checkpoint& checkpoint) const {
+    v1::ToPeer message;
+    encode(checkpoint_stamp(checkpoint, load_.time, load_.length), size_, load_, message);
+    checkpoint.mutable_load()->Swap(message.mutable_load());
+}
+
+void SolidSide::restore(const v1::Checkpoint& checkpoint) {
+    v1::ToPeer message;
+    *message.mutable_load() = checkpoint.load();
+    const v1::InterfaceLoad& load = checkpoint.load();
+    decode(message, checkpoint_stamp(checkpoint, load.time(), load.length()), size_, load_);
+}
+
+void FluidSide::configure(const v1::Configure& configure, Exchange* exchange, v1::Ready& ready) {
+    std::vector<Chain> chains;
+    if (exchange != nullptr) {
+        exchange->receive_start(chains, latest_);
+        size_ = exchange->size();
+    }
+    end_is_known_ = end_is_known(configure.schedule());
+    fluid_.configure(configure, chains, latest_, ready);
+    ready.set_nodes(size_.nodes);
+    ready.set_segments(size_.segments);
+}
+
+void FluidSide::receive(const Window& window, Exchange& exchange) {
+    std::swap(previous_, latest_);
+    exchange.receive(window, latest_);
+}
+
+void FluidSide::advance(const Window& window, v1::Report& report) {
+    load_.time = window.time;
+    load_.length = window.length;
+    if (end_is_known_) {
+        fluid_.advance(window, previous_, latest_, load_, report);
+        return;
+    }
+    extrapolate(latest_, window, guess_);
+    fluid_.advance(window, latest_, guess_, load_, report);
+}
+
+void FluidSide::send(const Window& window, Exchange& exchange) {
+    exchange.send(window, load_);
+}
+
+void FluidSide::store(v1::Checkpoint& checkpoint) const {
+    v1::ToPeer message;
+    encode(checkpoint_stamp(checkpoint, latest_.time, 0), size_, latest_, message);
+    checkpoint.mutable_motion()->Swap(message.mutable_motion());
+}
+
+void FluidSide::restore(const v1::Checkpoint& checkpoint) {
+    v1::ToPeer message;
+    *message.mutable_motion() = checkpoint.motion();
+    decode(message, checkpoint_stamp(checkpoint, checkpoint.motion().time(), 0), size_, latest_);
+}
+
+} // namespace duet::protocol
