@@ -24,6 +24,7 @@ class Body {
     const BodyConfig& config() const { return config_; }
     const Domains& domains() const { return domains_; }
     std::size_t nodes() const { return config_.mesh.node.size(); }
+    double area() const { return area_; } ///< m2, undeformed
     bool deformable() const { return mechanics_.has_value(); }
 
     /// Constant loads from the interface from now on: heat [N] W/m and force [N][2] N/m.
@@ -64,6 +65,7 @@ class Body {
 
     BodyConfig config_;
     Domains domains_;
+    double area_;
     Heat heat_;
     std::optional<Mechanics> mechanics_;
     std::vector<double> rest_position_, rest_velocity_; ///< of a fixed body

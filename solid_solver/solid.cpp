@@ -87,17 +87,39 @@ void Solid::interface_state(std::vector<double>& position,
     }
 }
 
-double Solid::exchange_limit(double conductivity, double spacing) const {
-    double limit = 0;
+/// The smallest positive limit(body, length of the edge) of all wet edges; 0: none.
+template <class Limit>
+double Solid::least_over_segments(const Limit& limit) const {
+    double least = 0;
     for (const Interface::Segment& segment : interface_.segment) {
         const Interface::Node &a = interface_.node[segment.a], &b = interface_.node[segment.b];
         const BodyConfig& body = bodies_[a.body].config();
-        const double edge = (body.mesh.node[b.node] - body.mesh.node[a.node]).norm();
-        const double layer = body.material.density * body.material.heat_capacity * edge / 2;
-        const double window = layer * (spacing / 2) / conductivity;
-        limit = limit == 0 ? window : std::min(limit, window);
+        const double one = limit(body, (body.mesh.node[b.node] - body.mesh.node[a.node]).norm());
+        if (one > 0) {
+            least = least == 0 ? one : std::min(least, one);
+        }
     }
-    return conductivity > 0 ? limit : 0;
+    return least;
+}
+
+double Solid::exchange_limit(double conductivity, double spacing) const {
+    if (conductivity <= 0) {
+        return 0;
+    }
+    return least_over_segments([&](const BodyConfig& body, double edge) {
+        const double layer = body.material.density * body.material.heat_capacity * edge / 2;
+        return layer * (spacing / 2) / conductivity;
+    });
+}
+
+double Solid::added_mass_limit(double fluid_density, double sound_speed) const {
+    if (sound_speed <= 0) {
+        return 0;
+    }
+    return least_over_segments([&](const BodyConfig& body, double edge) {
+        const bool moves = body.motion == Motion::deformable;
+        return moves ? body.material.density * edge / (fluid_density * sound_speed) : 0;
+    });
 }
 
 } // namespace duet::solid

@@ -47,6 +47,11 @@ class Solid {
     /// rho c dx_s/2 >= window k_f / (dx/2), dx_s the length of a wet edge. 0: no limit.
     double exchange_limit(double conductivity, double spacing) const;
 
+    /// Longest window for which the reaction of the fluid, frozen in it, stays lighter than the
+    /// first layer of a deformable body (method, section 3): rho dx_s >= rho_f c window. 0: no
+    /// limit.
+    double added_mass_limit(double fluid_density, double sound_speed) const;
+
     const InterfaceAccount& account() const { return account_; }
 
     template <class Visit>
@@ -62,6 +67,8 @@ class Solid {
     }
 
   private:
+    template <class Limit>
+    double least_over_segments(const Limit& limit) const;
     void set_loads(std::span<const double> force, std::span<const double> heat_flow);
     void book(double length, std::span<const double> force, std::span<const double> heat_flow);
 

@@ -1,0 +1,261 @@
+#include "solid_solver/solid_participant.hpp"
+
+#include "solid_solver/state.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <sstream>
+
+namespace duet::solid {
+
+namespace {
+
+Point to_point(const v1::Vector& v) {
+    return {v.x(), v.y()};
+}
+
+/// Runs `work`; what the core throws becomes the failure that the protocol reports.
+template <class Work>
+auto reported(const Work& work) {
+    try {
+        return work();
+    } catch (const std::invalid_argument& fault) {
+        throw protocol::Error(v1::Failed::SCENE, fault.what());
+    } catch (const std::runtime_error& fault) {
+        throw protocol::Error(v1::Failed::DIVERGED, fault.what());
+    }
+}
+
+BoundaryCondition condition_from_scene(const v1::Boundary& boundary) {
+    BoundaryCondition condition;
+    condition.name = boundary.name();
+    condition.from = to_point(boundary.along(0));
+    condition.to = to_point(boundary.along(1));
+    condition.fixed_x = boundary.fixed_x();
+    condition.fixed_y = boundary.fixed_y();
+    condition.traction = to_point(boundary.traction());
+    if (boundary.has_temperature()) {
+        condition.temperature = boundary.temperature();
+    }
+    condition.heat_flux = boundary.heat_flux();
+    if (boundary.has_convection()) {
+        condition.convection =
+            Convection{boundary.convection().coefficient(), boundary.convection().temperature()};
+    }
+    return condition;
+}
+
+} // namespace
+
+BodyConfig config_from_scene(const v1::Body& body, unsigned threads) {
+    BodyConfig config;
+    config.name = body.name();
+    config.mesh = rectangle_mesh(to_point(body.rectangle().corner()),
+                                 body.rectangle().width(),
+                                 body.rectangle().height(),
+                                 body.element_size());
+    config.motion = body.motion() == v1::Body::DEFORMABLE ? Motion::deformable : Motion::fixed;
+    config.material.density = body.density();
+    config.material.heat_capacity = body.heat_capacity();
+    config.material.conductivity = body.conductivity();
+    config.material.youngs_modulus = body.youngs_modulus();
+    config.material.poissons_ratio = body.poissons_ratio();
+    config.material.thermal_expansion = body.thermal_expansion();
+    config.initial_temperature = body.initial_temperature();
+    config.reference_temperature = body.has_reference_temperature() ? body.reference_temperature()
+                                                                    : body.initial_temperature();
+    config.initial_velocity = to_point(body.initial_velocity());
+    config.heat_source = body.heat_source();
+    config.body_force = to_point(body.body_force());
+    config.stiffness_damping = body.stiffness_damping();
+    config.thermoelastic_heating = body.thermoelastic_heating();
+    for (const v1::Boundary& boundary : body.boundary()) {
+        config.boundary.push_back(condition_from_scene(boundary));
+    }
+    config.threads = static_cast<int>(std::max(threads, 1u));
+    return config;
+}
+
+std::string Participant::name() const {
+    return "duet-solid " DUET_VERSION;
+}
+
+void Participant::configure(const v1::Configure& configure,
+                            v1::Ready& ready,
+                            std::vector<protocol::Chain>& chains,
+                            protocol::InterfaceMotion& start) {
+    scene_ = configure.scene();
+    std::vector<Point> region;
+    for (const v1::Vector& corner : scene_.fluid().region()) {
+        region.push_back(to_point(corner));
+    }
+    reported([&] {
+        std::vector<BodyConfig> bodies;
+        for (const v1::Body& body : scene_.solid().body()) {
+            bodies.push_back(config_from_scene(body, configure.threads()));
+        }
+        solid_ = std::make_unique<Solid>(std::move(bodies), region);
+        probes_ = Probes(scene_, *solid_);
+    });
+    series_.emplace(std::filesystem::path(configure.run_folder()) / "solid",
+                    snapshot::Cell::triangle,
+                    std::map<std::string, std::string>{{"title", scene_.title()}});
+    write_snapshot();
+
+    for (const Interface::Chain& chain : solid_->interface().chain) {
+        chains.push_back({chain.node, chain.closed});
+    }
+    fill(start);
+    ready.set_stable_step(longest_window());
+    ready.set_nodes(solid_->interface().node.size());
+    ready.set_segments(solid_->interface().segment.size());
+    describe(ready);
+    fill(*ready.mutable_ledger());
+    probes_.take(*solid_, time_, *ready.mutable_sample());
+}
+
+void Participant::advance(const protocol::Window& window,
+                          const protocol::InterfaceLoad& load,
+                          protocol::InterfaceMotion& end,
+                          v1::Report& report) {
+    report.set_steps(
+        reported([&] { return solid_->advance(window.length, load.force, load.heat_flow); }));
+    time_ = window.time + window.length;
+    fill(end);
+    report.set_stable_step(longest_window());
+    fill(*report.mutable_ledger());
+    if (window.sample) {
+        probes_.take(*solid_, time_, *report.mutable_sample());
+    }
+    if (window.snapshot) {
+        write_snapshot();
+    }
+}
+
+std::string Participant::save() const {
+    std::string bytes(reinterpret_cast<const char*>(&time_), sizeof time_);
+    return bytes + save_state(*solid_);
+}
+
+void Participant::restore(const std::string& state) {
+    reported([&] {
+        if (state.size() < sizeof time_) {
+            throw std::invalid_argument("The saved state of the solid is empty.");
+        }
+        restore_state(*solid_, state.substr(sizeof time_));
+    });
+    std::memcpy(&time_, state.data(), sizeof time_);
+}
+
+void Participant::finish() {
+    series_.reset();
+}
+
+/// The solid takes sub-steps of its own within a window; what limits the window is the exchange:
+/// loads are frozen in it, while the first layer of the solid already answers.
+double Participant::longest_window() const {
+    const v1::Fluid& fluid = scene_.fluid();
+    const double heat = solid_->exchange_limit(fluid.conductivity(), fluid.spacing());
+    const double mass = solid_->added_mass_limit(fluid.density(), fluid.sound_speed());
+    return heat > 0 && mass > 0 ? std::min(heat, mass) : std::max(heat, mass);
+}
+
+void Participant::fill(protocol::InterfaceMotion& motion) const {
+    motion.time = time_;
+    solid_->interface_state(motion.position, motion.velocity, motion.temperature);
+}
+
+void Participant::fill(v1::Ledger& ledger) const {
+    double mass = 0, heat = 0, walls = 0, sources = 0, thermoelastic = 0;
+    double work = 0, kinetic = 0, strain = 0;
+    for (const Body& body : solid_->bodies()) {
+        const HeatAccount& account = body.heat().account();
+        mass += body.config().material.density * body.area();
+        heat += body.heat().stored();
+        walls += account.walls;
+        sources += account.sources + account.thermoelastic;
+        thermoelastic += account.thermoelastic;
+        if (body.mechanics()) {
+            work += body.mechanics()->interface_work();
+            kinetic += body.mechanics()->kinetic_energy();
+            strain += body.mechanics()->strain_energy();
+        }
+    }
+    const InterfaceAccount& passed = solid_->account();
+    ledger.set_mass(mass);
+    ledger.set_heat(heat);
+    ledger.set_heat_from_interface(passed.heat);
+    ledger.set_heat_from_walls(walls);
+    ledger.set_heat_from_sources(sources);
+    ledger.set_impulse_x(passed.impulse_x);
+    ledger.set_impulse_y(passed.impulse_y);
+    ledger.set_work(work);
+    ledger.set_kinetic_energy(kinetic);
+    ledger.set_strain_energy(strain);
+    ledger.set_exchanged_heat(passed.exchanged_heat);
+    ledger.set_exchanged_impulse(passed.exchanged_impulse);
+    (*ledger.mutable_figure())["thermoelastic_heat"] = thermoelastic;
+}
+
+void Participant::describe(v1::Ready& ready) const {
+    std::uint64_t unknowns = 0;
+    for (const Body& body : solid_->bodies()) {
+        std::ostringstream line;
+        line << "body " << body.config().name << ": "
+             << (body.deformable() ? "deformable, total Lagrangian" : "fixed, heat alone") << ", "
+             << body.nodes() << " nodes, " << body.config().mesh.triangle.size() << " triangles, "
+             << body.domains().size() << " smoothing domains, stable step " << body.stable_step()
+             << " s";
+        ready.add_model(line.str());
+        unknowns += body.nodes();
+    }
+    ready.set_unknowns(unknowns);
+}
+
+/// All bodies in one frame, one behind the other.
+void Participant::write_snapshot() {
+    const auto& bodies = solid_->bodies();
+    const bool moving =
+        std::any_of(bodies.begin(), bodies.end(), [](const Body& b) { return b.deformable(); });
+    std::vector<double> position, velocity, displacement, temperature, von_mises;
+    std::vector<std::uint32_t> connectivity;
+    for (const Body& body : bodies) {
+        const auto before = static_cast<std::uint32_t>(temperature.size());
+        for (const Triangle& triangle : body.config().mesh.triangle) {
+            for (const std::uint32_t node : triangle) {
+                connectivity.push_back(before + node);
+            }
+        }
+        const auto x = body.position(), v = body.velocity(), t = body.temperature();
+        position.insert(position.end(), x.begin(), x.end());
+        temperature.insert(temperature.end(), t.begin(), t.end());
+        if (!moving) {
+            continue;
+        }
+        velocity.insert(velocity.end(), v.begin(), v.end());
+        for (std::size_t i = 0; i < body.nodes(); ++i) {
+            displacement.push_back(x[2 * i] - body.config().mesh.node[i].x());
+            displacement.push_back(x[2 * i + 1] - body.config().mesh.node[i].y());
+        }
+        std::vector<PlaneTensor> stress(body.nodes());
+        if (body.mechanics()) {
+            stress = body.mechanics()->nodal_stress(t);
+        }
+        for (const PlaneTensor& s : stress) {
+            von_mises.push_back(s.von_mises());
+        }
+    }
+    snapshot::Frame frame;
+    frame.time = time_;
+    frame.position = position;
+    frame.connectivity = connectivity;
+    frame.fields = {{"temperature", 1, temperature}};
+    if (moving) {
+        frame.fields.push_back({"displacement", 2, displacement});
+        frame.fields.push_back({"velocity", 2, velocity});
+        frame.fields.push_back({"von_mises", 1, von_mises});
+    }
+    series_->append(frame);
+}
+
+} // namespace duet::solid
