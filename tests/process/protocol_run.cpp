@@ -1,0 +1,111 @@
+// Whole runs of participants as processes, led by the test.
+
+#include "tests/process/protocol_stage.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+namespace duet::test {
+namespace {
+
+constexpr auto solid = v1::ROLE_SOLID;
+constexpr auto fluid = v1::ROLE_FLUID;
+
+std::vector<double> numbers(const std::string& bytes) {
+    std::vector<double> values(bytes.size() / sizeof(double));
+    std::memcpy(values.data(), bytes.data(), values.size() * sizeof(double));
+    return values;
+}
+
+struct Cast {
+    const char* name;
+    std::vector<std::string> (*solid_command)(v1::Role);
+    std::vector<std::string> (*fluid_command)(v1::Role);
+    v1::Coupling::Schedule schedule;
+};
+
+void PrintTo(const Cast& cast, std::ostream* stream) {
+    *stream << cast.name;
+}
+
+class Run : public testing::TestWithParam<Cast> {};
+
+// What the examples prescribe arrives: the loads of the fluid on the solid's books, the motion of
+// the solid in the record, and all of it balanced.
+TEST_P(Run, PlaysToItsEnd) {
+    constexpr int windows = 10;
+    Stage stage;
+    stage.schedule = GetParam().schedule;
+    stage.start(solid, GetParam().solid_command(solid));
+    stage.start(fluid, GetParam().fluid_command(fluid));
+    stage.configure_both();
+    stage.play(0, windows);
+    stage.finish();
+    EXPECT_EQ(stage.children.at(solid).wait(5), 0);
+    EXPECT_EQ(stage.children.at(fluid).wait(5), 0);
+
+    ASSERT_EQ(stage.reports[solid].size(), windows);
+    ASSERT_EQ(stage.reports[fluid].size(), windows);
+    for (int k = 0; k < windows; ++k)
+        for (const v1::Role role : {solid, fluid}) {
+            EXPECT_EQ(stage.reports[role][k].window(), k);
+            EXPECT_DOUBLE_EQ(stage.reports[role][k].time(), (k + 1) * stage.length);
+        }
+
+    // 100 W/m2 and (0.3, -0.2) Pa on 3 m of outline. With fluid_first the load of window k acts in
+    // window k, else one window later; what the fluid sent last is then still under way.
+    const bool at_once = GetParam().schedule == v1::Coupling::FLUID_FIRST;
+    const double sent = windows * stage.length;
+    const double acted = at_once ? sent : sent - stage.length;
+    const v1::Ledger& of_solid = stage.reports[solid].back().ledger();
+    const v1::Ledger& of_fluid = stage.reports[fluid].back().ledger();
+    EXPECT_NEAR(of_fluid.heat_from_interface(), -300 * sent, 1e-12);
+    EXPECT_NEAR(of_solid.heat_from_interface(), 300 * acted, 1e-12);
+    EXPECT_NEAR(of_solid.impulse_x(), 0.9 * acted, 1e-12);
+    EXPECT_NEAR(of_solid.impulse_y(), -0.6 * acted, 1e-12);
+    EXPECT_NEAR(of_solid.work(), 0.9 * 0.25 * acted, 1e-12);
+
+    // The record: the start, then one motion and one load a window.
+    int motions = 0, loads = 0;
+    for (const v1::ToPeer& exchange : stage.exchanges) {
+        if (exchange.has_load()) {
+            EXPECT_EQ(exchange.load().window(), loads++);
+            EXPECT_NEAR(exchange.load().heat(), 300 * stage.length, 1e-12);
+            continue;
+        }
+        const v1::InterfaceMotion& motion = exchange.motion();
+        EXPECT_EQ(motion.start(), motions == 0);
+        EXPECT_EQ(motion.chain_size(), motions == 0 ? 1 : 0);
+        const std::vector<double> position = numbers(motion.position());
+        ASSERT_EQ(position.size(), 60);
+        // All three schedules move the solid by its velocity; node 0 starts at the corner (1, 2).
+        EXPECT_NEAR(position[0], 1 + 0.25 * stage.length * motions, 1e-12);
+        EXPECT_NEAR(position[1], 2, 1e-12);
+        EXPECT_EQ(numbers(motion.temperature()), std::vector<double>(30, 350));
+        ++motions;
+    }
+    EXPECT_EQ(motions, windows + 1);
+    EXPECT_EQ(loads, windows);
+}
+
+constexpr auto fluid_first = v1::Coupling::FLUID_FIRST;
+constexpr auto solid_first = v1::Coupling::SOLID_FIRST;
+constexpr auto parallel = v1::Coupling::PARALLEL;
+
+INSTANTIATE_TEST_SUITE_P(
+    Casts,
+    Run,
+    testing::Values(Cast{"cpp_cpp_fluid_first", minimal_cpp, minimal_cpp, fluid_first},
+                    Cast{"cpp_cpp_solid_first", minimal_cpp, minimal_cpp, solid_first},
+                    Cast{"cpp_cpp_parallel", minimal_cpp, minimal_cpp, parallel},
+                    Cast{"python_cpp_fluid_first", minimal_python, minimal_cpp, fluid_first},
+                    Cast{"cpp_python_fluid_first", minimal_cpp, minimal_python, fluid_first},
+                    Cast{"cpp_python_solid_first", minimal_cpp, minimal_python, solid_first},
+                    Cast{"python_cpp_parallel", minimal_python, minimal_cpp, parallel},
+                    Cast{"python_python_solid_first", minimal_python, minimal_python, solid_first}),
+    [](const auto& parameter) { return parameter.param.name; });
+
+} // namespace
+} // namespace duet::test
