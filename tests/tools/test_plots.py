@@ -1,0 +1,104 @@
+"""Draws the pictures of tools/ from a small run's folder (made by the program given as argument) and
+looks at what came out."""
+
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import h5py
+import matplotlib.image
+import numpy
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def run(tool, *options):
+    command = ["/usr/bin/python3", ROOT / "tools" / tool, *map(str, options)]
+    return subprocess.run(command, capture_output=True, text=True)
+
+
+class Plots(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.place = tempfile.TemporaryDirectory()
+        cls.folder = Path(cls.place.name)
+        cls.picture = cls.folder / "out.png"
+        subprocess.run([make_run, cls.folder], check=True)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.place.cleanup()
+
+    def draw(self, tool, *options):
+        self.picture.unlink(missing_ok=True)
+        result = run(tool, self.folder, "-o", self.picture, *options)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        return matplotlib.image.imread(self.picture)[:, :, :3]
+
+    def sentence(self, tool, *options):
+        """What the tool says when it fails."""
+        result = run(tool, *options)
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertEqual(result.stderr.count("\n"), 1, "one sentence, no traceback")
+        return result.stderr
+
+    def has_colour(self, picture, colour):
+        return (abs(picture - colour).max(axis=2) < 0.02).sum() > 500
+
+    def test_temperature_is_drawn_in_both_bodies(self):
+        picture = self.draw("plot_fields.py", "--time", 0, "--range", 1000, 2000)
+        inferno = matplotlib.colormaps["inferno"]
+        self.assertTrue(self.has_colour(picture, inferno(0.0)[:3]), "the fluid at 1000 K")
+        self.assertTrue(self.has_colour(picture, inferno(1.0)[:3]), "the plate at 2000 K")
+
+    def test_each_time_has_its_panel(self):
+        one = self.draw("plot_fields.py", "--time", 1)
+        three = self.draw("plot_fields.py", "--time", 0, 1, 2, "--arrows", "--mesh")
+        self.assertGreater(three.shape[1], 1.5 * one.shape[1])
+
+    def test_time_chooses_the_nearest_snapshot(self):
+        early, same, late = (
+            self.draw("plot_fields.py", "--title", " ", "--time", t) for t in (0.4, 0.6, 1.9)
+        )
+        self.assertTrue(numpy.array_equal(early, same))
+        self.assertFalse(early.shape == late.shape and numpy.array_equal(early, late))
+
+    def test_a_field_of_one_side_leaves_the_other_grey(self):
+        picture = self.draw("plot_fields.py", "--field", "speed", "--time", 2)
+        grey = (numpy.ptp(picture, axis=2) < 0.01) & (picture[:, :, 0] > 0.5) & (picture[:, :, 0] < 0.95)
+        self.assertGreater(grey.mean(), 0.05)
+
+    def test_histories_with_reference(self):
+        without = self.draw("plot_probes.py", "--probe", "plate_centre")
+        by_case = self.draw(
+            "plot_probes.py", "--probe", "plate_centre", "--reference", self.folder / "history.csv"
+        )
+        by_hand = self.draw(
+            "plot_probes.py", "--probe", "plate_centre", "--reference",
+            f"plate_centre={self.folder / 'history.csv'}:T_K",
+        )
+        self.assertFalse(numpy.array_equal(without, by_case))
+        self.assertTrue(numpy.array_equal(by_case, by_hand))
+
+    def test_errors_are_sentences(self):
+        self.assertIn("has no field voltage; it has pressure, temperature, velocity_x",
+                      self.sentence("plot_fields.py", self.folder, "--field", "voltage"))
+        self.assertIn("nowhere is not a folder", self.sentence("plot_fields.py", "nowhere"))
+        self.assertIn("has no probe lift; it has plate_centre",
+                      self.sentence("plot_probes.py", self.folder, "--probe", "lift"))
+        self.assertIn("has no column Q; it has t, T_K", self.sentence(
+            "plot_probes.py", self.folder, "--reference", f"fluid_mean={self.folder / 'history.csv'}:Q"))
+        self.assertIn("cannot read missing.csv: No such file", self.sentence(
+            "plot_probes.py", self.folder, "--reference", "fluid_mean=missing.csv:Q"))
+        self.assertIn("cannot write", self.sentence(
+            "plot_fields.py", self.folder, "-o", self.folder / "none" / "out.png"))
+        with tempfile.TemporaryDirectory() as empty:
+            self.assertIn("neither fluid.h5 nor solid.h5", self.sentence("plot_fields.py", empty))
+            h5py.File(Path(empty) / "fluid.h5", "w").close()
+            self.assertIn("holds no frame yet", self.sentence("plot_fields.py", empty))
+
+
+make_run = sys.argv.pop()
+unittest.main()
