@@ -27,6 +27,7 @@ class MinimalSolid final : public SolidSolver {
         const v1::Body& body = scene_.solid().body(0);
         if (scene_.has_fluid())
             outline(body, chains, start);
+        start_ = start;
         ready.set_stable_step(0); // 0: any window will do
         ready.set_unknowns(start.nodes());
         ready.add_model("prescribed motion and temperature of body " + body.name());
@@ -39,18 +40,30 @@ class MinimalSolid final : public SolidSolver {
                  const InterfaceLoad& load,
                  InterfaceMotion& end,
                  v1::Report& report) override {
-        book(window, load, end);
+        book(window, load);
+        time_ = window.time + window.length;
+        end = start_;
         for (std::size_t i = 0; i < end.position.size(); ++i)
-            end.position[i] += window.length * end.velocity[i];
+            end.position[i] += time_ * end.velocity[i];
         report.set_steps(1);
         *report.mutable_ledger() = ledger_;
         if (window.sample)
             sample(*report.mutable_sample(), window.time + window.length);
     }
 
-    // The whole state: here only what has been booked (the library keeps the interface).
-    std::string save() const override { return ledger_.SerializeAsString(); }
-    void restore(const std::string& state) override { ledger_.ParseFromString(state); }
+    // The whole state, as bytes in any form: here how far the body moved, and what has been booked.
+    std::string save() const override {
+        v1::Report state;
+        state.set_time(time_);
+        *state.mutable_ledger() = ledger_;
+        return state.SerializeAsString();
+    }
+    void restore(const std::string& bytes) override {
+        v1::Report state;
+        state.ParseFromString(bytes);
+        time_ = state.time();
+        ledger_ = state.ledger();
+    }
 
     void finish() override {}
 
@@ -83,7 +96,7 @@ class MinimalSolid final : public SolidSolver {
 
     // What came through the interface. The temperature is prescribed, so what arrives as heat
     // leaves as a (negative) source, and the heat held stays what it was.
-    void book(const Window& window, const InterfaceLoad& load, const InterfaceMotion& motion) {
+    void book(const Window& window, const InterfaceLoad& load) {
         double heat = 0, exchanged_heat = 0, impulse[2] = {0, 0}, exchanged_impulse = 0, work = 0;
         for (const double flow : load.heat_flow) {
             heat += window.length * flow;
@@ -92,7 +105,7 @@ class MinimalSolid final : public SolidSolver {
         for (std::size_t i = 0; i < load.force.size(); ++i) {
             impulse[i % 2] += window.length * load.force[i];
             exchanged_impulse += window.length * std::abs(load.force[i]);
-            work += window.length * load.force[i] * motion.velocity[i];
+            work += window.length * load.force[i] * start_.velocity[i];
         }
         ledger_.set_heat_from_interface(ledger_.heat_from_interface() + heat);
         ledger_.set_heat_from_sources(-ledger_.heat_from_interface());
@@ -125,6 +138,8 @@ class MinimalSolid final : public SolidSolver {
     }
 
     v1::Scene scene_;
+    InterfaceMotion start_;
+    double time_ = 0; // s
     v1::Ledger ledger_;
 };
 
