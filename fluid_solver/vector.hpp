@@ -41,11 +41,18 @@ struct Mat2 {
     Mat2& operator+=(const Mat2& o) {
         return xx += o.xx, xy += o.xy, yx += o.yx, yy += o.yy, *this;
     }
+    friend Mat2 operator+(Mat2 a, const Mat2& b) { return a += b; }
     friend Vec2 operator*(const Mat2& m, Vec2 a) {
         return {m.xx * a.x + m.xy * a.y, m.yx * a.x + m.yy * a.y};
     }
 };
 
+inline Mat2 operator*(const Mat2& a, const Mat2& b) {
+    return {a.xx * b.xx + a.xy * b.yx,
+            a.xx * b.xy + a.xy * b.yy,
+            a.yx * b.xx + a.yy * b.yx,
+            a.yx * b.xy + a.yy * b.yy};
+}
 inline Mat2 outer(Vec2 a, Vec2 b) {
     return {a.x * b.x, a.x * b.y, a.y * b.x, a.y * b.y};
 }

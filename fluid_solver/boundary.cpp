@@ -1,0 +1,414 @@
+#include "fluid_solver/boundary.hpp"
+
+#include "fluid_solver/fluid.hpp"
+#include "fluid_solver/kernel.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace duet::fluid {
+
+namespace {
+
+double signed_area(const std::vector<Vec2>& polygon) {
+    double twice = 0;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        twice += cross(polygon[i], polygon[(i + 1) % polygon.size()]);
+    }
+    return twice / 2;
+}
+
+double distance_to_segment(Vec2 x, Vec2 a, Vec2 b) {
+    const Vec2 t = b - a;
+    const double s = std::clamp(dot(x - a, t) / dot(t, t), 0.0, 1.0);
+    return norm(x - a - s * t);
+}
+
+std::string print(Vec2 x) {
+    return "(" + std::to_string(x.x) + ", " + std::to_string(x.y) + ")";
+}
+
+} // namespace
+
+Boundary::Boundary(const Config& config,
+                   const std::vector<Chain>& chains,
+                   const InterfaceState& state)
+    : spacing_(config.spacing), support_(support_in_spacings * config.spacing), chains_(chains),
+      interface_nodes_(state.position.size()), position_(state.position) {
+    std::vector<Vec2> corners = config.region;
+    if (signed_area(corners) > 0) {
+        std::reverse(corners.begin(), corners.end());
+    }
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        sides_.push_back({corners[i], corners[(i + 1) % corners.size()], none});
+    }
+    assign_walls(config);
+    Vec2 lower = corners[0], upper = corners[0];
+    for (const Vec2 c : corners) {
+        lower = {std::min(lower.x, c.x), std::min(lower.y, c.y)};
+        upper = {std::max(upper.x, c.x), std::max(upper.y, c.y)};
+    }
+    grid_ = CellGrid(lower, upper, support_);
+    for (const Chain& chain : chains_) {
+        interface_segments_ += chain.segments();
+    }
+    build();
+    set_values(state.velocity, std::vector<Vec2>(interface_nodes_), state.temperature);
+}
+
+void Boundary::assign_walls(const Config& config) {
+    const double tolerance = 1e-6 * config.spacing;
+    for (std::size_t w = 0; w < config.walls.size(); ++w) {
+        const Wall& wall = config.walls[w];
+        bool found = false;
+        for (Side& side : sides_) {
+            if (distance_to_segment(side.a, wall.from, wall.to) < tolerance
+                && distance_to_segment(side.b, wall.from, wall.to) < tolerance) {
+                side.wall = static_cast<std::uint32_t>(w);
+                found = true;
+            }
+        }
+        if (!found) {
+            throw SceneError("wall '" + wall.name + "' from " + print(wall.from) + " to "
+                             + print(wall.to)
+                             + " covers no side of the fluid's region; let it run from corner to "
+                               "corner (add corners to the region to split a side)");
+        }
+        wall_names_.push_back(wall.name);
+        wall_heated_.push_back(wall.temperature.has_value());
+        wall_temperature_.push_back(wall.temperature.value_or(0));
+        wall_velocity_.push_back(wall.velocity);
+    }
+}
+
+void Boundary::place(const std::vector<Vec2>& positions) {
+    if (positions == position_) {
+        return;
+    }
+    position_ = positions;
+    build();
+}
+
+void Boundary::build() {
+    segments_.clear();
+    faces_.clear();
+    cells_.clear();
+    velocity_.resize(interface_nodes_);
+    acceleration_.resize(interface_nodes_);
+    temperature_.resize(interface_nodes_);
+    wall_length_.assign(wall_names_.size(), 0);
+    for (const Chain& chain : chains_) {
+        add_chain(chain);
+    }
+    add_walls();
+    register_faces();
+}
+
+void Boundary::add_chain(const Chain& chain) {
+    const auto first = static_cast<std::uint32_t>(segments_.size());
+    const auto count = static_cast<std::uint32_t>(chain.segments());
+    for (std::uint32_t j = 0; j < count; ++j) {
+        const std::uint32_t a = chain.nodes[j];
+        const std::uint32_t b = chain.nodes[(j + 1) % chain.nodes.size()];
+        segments_.push_back(
+            {position_[a], position_[b], a, b, none, norm(position_[b] - position_[a]), 0, 0, 0});
+    }
+    // Faces end where the direction changes. (A face that runs over the first node of a closed
+    // chain is cut there, which the ghost sums of neighbouring faces allow for.)
+    const auto direction = [&](std::uint32_t j) {
+        const Segment& s = segments_[first + j];
+        return (1 / s.length) * (s.b - s.a);
+    };
+    std::uint32_t start = 0;
+    for (std::uint32_t j = 1; j <= count; ++j) {
+        if (j == count || std::abs(cross(direction(start), direction(j))) > 1e-9
+            || dot(direction(start), direction(j)) < 0) {
+            add_face(first + start, j - start, true);
+            start = j;
+        }
+    }
+    link_cells(chain, first);
+}
+
+void Boundary::add_face(std::uint32_t first, std::uint32_t segments, bool heated) {
+    Face face;
+    face.a = segments_[first].a;
+    const Vec2 end = segments_[first + segments - 1].b;
+    face.length = norm(end - face.a);
+    face.tangent = (1 / face.length) * (end - face.a);
+    face.normal = left(face.tangent);
+    face.first = first;
+    face.segments = segments;
+    face.heated = heated;
+    for (std::uint32_t j = first; j < first + segments; ++j) {
+        segments_[j].face_start = dot(segments_[j].a - face.a, face.tangent);
+        add_cells(j, face);
+    }
+    faces_.push_back(face);
+}
+
+void Boundary::add_cells(std::uint32_t segment, const Face& face) {
+    Segment& s = segments_[segment];
+    s.first_cell = static_cast<std::uint32_t>(cells_.size());
+    s.cells = static_cast<std::uint32_t>(
+        std::max(1.0, std::ceil(s.length / (0.5 * spacing_) * (1 - 1e-9))));
+    for (std::uint32_t c = 0; c < s.cells; ++c) {
+        const auto index = static_cast<std::uint32_t>(cells_.size());
+        const bool starts_face = segment == face.first && c == 0;
+        if (!starts_face) {
+            cells_.back().after = index;
+        }
+        cells_.push_back({segment,
+                          (c + 0.5) / s.cells,
+                          s.length / s.cells,
+                          face.normal,
+                          face.heated,
+                          starts_face ? none : index - 1,
+                          none});
+    }
+}
+
+void Boundary::link_cells(const Chain& chain, std::uint32_t first) {
+    // Across a joint that turns by less than 30 degrees the surface counts as smooth.
+    const double smooth = std::cos(std::acos(-1.0) / 6);
+    const auto count = static_cast<std::uint32_t>(chain.segments());
+    for (std::uint32_t j = chain.closed ? 0 : 1; j < count; ++j) {
+        const Segment& from = segments_[first + (j + count - 1) % count];
+        const Segment& to = segments_[first + j];
+        const std::uint32_t before = from.first_cell + from.cells - 1;
+        if (dot(cells_[before].normal, cells_[to.first_cell].normal) > smooth) {
+            cells_[before].after = to.first_cell;
+            cells_[to.first_cell].before = before;
+        }
+    }
+}
+
+double Boundary::perimeter_position(Vec2 x) const {
+    double arc = 0, best = 0, nearest = std::numeric_limits<double>::infinity();
+    for (const Side& side : sides_) {
+        const double d = distance_to_segment(x, side.a, side.b);
+        const double length = norm(side.b - side.a);
+        if (d < nearest) {
+            nearest = d;
+            best = arc + std::clamp(dot(x - side.a, side.b - side.a) / length, 0.0, length);
+        }
+        arc += length;
+    }
+    if (nearest > 1e-3 * spacing_) {
+        throw SceneError("a chain of the interface ends at " + print(x) + ", "
+                         + std::to_string(nearest)
+                         + " m from the cavity's boundary; let the solid lean on a wall there, or "
+                           "close the chain");
+    }
+    return best;
+}
+
+void Boundary::add_walls() {
+    struct End {
+        double arc;
+        bool chain_starts;
+    };
+    std::vector<End> ends;
+    double perimeter = 0;
+    for (const Side& side : sides_) {
+        perimeter += norm(side.b - side.a);
+    }
+    for (const Chain& chain : chains_) {
+        if (!chain.closed) {
+            ends.push_back({perimeter_position(position_[chain.nodes.front()]), true});
+            ends.push_back({perimeter_position(position_[chain.nodes.back()]), false});
+        }
+    }
+    std::sort(ends.begin(), ends.end(), [](End p, End q) { return p.arc < q.arc; });
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+        if (ends[i].chain_starts == ends[(i + 1) % ends.size()].chain_starts) {
+            throw SceneError("the interface chains that end on the cavity's boundary overlap each "
+                             "other near arc length "
+                             + std::to_string(ends[i].arc) + " m of the boundary");
+        }
+    }
+    // The wall is kept from where a chain ends to where the next one starts.
+    const auto keep = [&](double from, double to) {
+        double arc = 0;
+        for (const Side& side : sides_) {
+            const double length = norm(side.b - side.a);
+            const double p = std::max(from - arc, 0.0) / length;
+            const double q = std::min(to - arc, length) / length;
+            if ((q - p) * length > 1e-9 * spacing_) {
+                const Vec2 t = side.b - side.a;
+                add_side({p == 0 ? side.a : side.a + p * t,
+                          q == 1 ? side.b : side.a + q * t,
+                          side.wall});
+            }
+            arc += length;
+        }
+    };
+    if (ends.empty()) {
+        keep(0, perimeter);
+        return;
+    }
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+        if (!ends[i].chain_starts) {
+            if (i + 1 < ends.size()) {
+                keep(ends[i].arc, ends[i + 1].arc);
+            } else {
+                keep(ends[i].arc, perimeter);
+                keep(0, ends[0].arc);
+            }
+        }
+    }
+}
+
+void Boundary::add_side(const Side& side) {
+    const auto node = static_cast<std::uint32_t>(velocity_.size());
+    const bool named = side.wall != none;
+    const double length = norm(side.b - side.a);
+    segments_.push_back({side.a, side.b, node, node + 1, side.wall, length, 0, 0, 0});
+    for (int end = 0; end < 2; ++end) {
+        velocity_.push_back(named ? wall_velocity_[side.wall] : Vec2{});
+        acceleration_.push_back({});
+        temperature_.push_back(named ? wall_temperature_[side.wall] : 0);
+    }
+    if (named) {
+        wall_length_[side.wall] += length;
+    }
+    add_face(static_cast<std::uint32_t>(segments_.size()) - 1, 1, named && wall_heated_[side.wall]);
+}
+
+void Boundary::register_faces() {
+    const double reach = support_ + grid_.cell() * std::sqrt(0.5) * (1 + 1e-9);
+    const auto for_cells = [&](const auto& visit) {
+        for (std::uint32_t f = 0; f < faces_.size(); ++f) {
+            const Vec2 a = faces_[f].a;
+            const Vec2 b = a + faces_[f].length * faces_[f].tangent;
+            const int left_column = grid_.column(std::min(a.x, b.x) - reach);
+            const int right_column = grid_.column(std::max(a.x, b.x) + reach);
+            const int low_row = grid_.row(std::min(a.y, b.y) - reach);
+            const int high_row = grid_.row(std::max(a.y, b.y) + reach);
+            for (int row = low_row; row <= high_row; ++row) {
+                for (int column = left_column; column <= right_column; ++column) {
+                    if (distance_to_segment(grid_.centre(column, row), a, b) <= reach) {
+                        visit(grid_.index(column, row), f);
+                    }
+                }
+            }
+        }
+    };
+    candidate_start_.assign(grid_.size() + 1, 0);
+    for_cells([&](std::size_t cell, std::uint32_t) { ++candidate_start_[cell + 1]; });
+    for (std::size_t c = 0; c < grid_.size(); ++c) {
+        candidate_start_[c + 1] += candidate_start_[c];
+    }
+    candidate_.resize(candidate_start_.back());
+    cursor_.assign(candidate_start_.begin(), candidate_start_.end());
+    for_cells([&](std::size_t cell, std::uint32_t f) { candidate_[cursor_[cell]++] = f; });
+}
+
+void Boundary::set_values(std::span<const Vec2> velocity,
+                          std::span<const Vec2> acceleration,
+                          std::span<const double> temperature) {
+    std::copy(velocity.begin(), velocity.end(), velocity_.begin());
+    std::copy(acceleration.begin(), acceleration.end(), acceleration_.begin());
+    std::copy(temperature.begin(), temperature.end(), temperature_.begin());
+}
+
+void Boundary::contacts(Vec2 x, std::vector<Contact>& contacts) const {
+    contacts.clear();
+    const std::size_t cell = grid_.index(x);
+    for (std::uint32_t c = candidate_start_[cell]; c < candidate_start_[cell + 1]; ++c) {
+        const Face& face = faces_[candidate_[c]];
+        const Vec2 r = x - face.a;
+        const double distance = -dot(r, face.normal);
+        const double foot = dot(r, face.tangent);
+        const double beyond = std::max({0.0, -foot, foot - face.length});
+        if (distance > 0 && distance * distance + beyond * beyond < support_ * support_) {
+            contacts.push_back({&face, distance, foot});
+        }
+    }
+}
+
+WallPoint Boundary::at(const Face& face, double arc) const {
+    // Segments of a face are sorted by where they start; most faces have equal segments, so the
+    // proportional guess is right or next to it.
+    auto j = static_cast<std::uint32_t>(std::clamp(arc / face.length, 0.0, 1.0)
+                                        * static_cast<double>(face.segments));
+    j = std::min(j, face.segments - 1);
+    while (j > 0 && arc < segments_[face.first + j].face_start) {
+        --j;
+    }
+    while (j + 1 < face.segments && arc >= segments_[face.first + j + 1].face_start) {
+        ++j;
+    }
+    const Segment& s = segments_[face.first + j];
+    const double w = std::clamp((arc - s.face_start) / s.length, 0.0, 1.0);
+    const Vec2 v = (1 - w) * velocity_[s.node_a] + w * velocity_[s.node_b];
+    const double T = (1 - w) * temperature_[s.node_a] + w * temperature_[s.node_b];
+    return {Lanes{v.x, v.y, 0, T},
+            (1 - w) * acceleration_[s.node_a] + w * acceleration_[s.node_b],
+            &s,
+            w};
+}
+
+std::uint32_t Boundary::cell_at(const Segment& segment, double along) const {
+    const auto c = static_cast<std::uint32_t>(along * segment.cells);
+    return segment.first_cell + std::min(c, segment.cells - 1);
+}
+
+Boundary::Nearest Boundary::nearest(Vec2 x) const {
+    Nearest best;
+    double least = support_ * support_;
+    const std::size_t cell = grid_.index(x);
+    for (std::uint32_t c = candidate_start_[cell]; c < candidate_start_[cell + 1]; ++c) {
+        const Face& face = faces_[candidate_[c]];
+        const Vec2 r = x - face.a;
+        const double foot = std::clamp(dot(r, face.tangent), 0.0, face.length);
+        const Vec2 point = face.a + foot * face.tangent;
+        const double square = dot(x - point, x - point);
+        const double distance = -dot(r, face.normal);
+        // At a corner two faces share the nearest point; the one whose line is farther away tells
+        // on which side x lies.
+        const bool tie =
+            best.face != nullptr && std::abs(square - least) <= 1e-12 * support_ * support_;
+        if (tie ? std::abs(distance) > std::abs(best.distance) : square < least) {
+            best = {&face, distance, point, foot};
+            least = tie ? least : square;
+        }
+    }
+    if (best.face != nullptr) {
+        best.distance = std::copysign(std::sqrt(least), best.distance);
+    }
+    return best;
+}
+
+bool Boundary::contains(Vec2 x) const {
+    bool inside = false;
+    for (const Segment& s : segments_) {
+        if ((s.a.y > x.y) != (s.b.y > x.y)
+            && x.x < s.a.x + (x.y - s.a.y) / (s.b.y - s.a.y) * (s.b.x - s.a.x)) {
+            inside = !inside;
+        }
+    }
+    return inside;
+}
+
+double Boundary::distance(Vec2 x) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Segment& s : segments_) {
+        least = std::min(least, distance_to_segment(x, s.a, s.b));
+    }
+    return least;
+}
+
+double Boundary::area() const {
+    double twice = 0;
+    for (const Segment& s : segments_) {
+        twice -= cross(s.a, s.b);
+    }
+    return twice / 2;
+}
+
+bool Boundary::heated() const {
+    return std::any_of(faces_.begin(), faces_.end(), [](const Face& f) { return f.heated; });
+}
+
+} // namespace duet::fluid

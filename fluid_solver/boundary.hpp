@@ -1,0 +1,158 @@
+// The fluid's boundary: closed loops of straight segments, made of the cavity's walls and the
+// solids' interface, with the fluid to the right of the direction of travel.
+
+#pragma once
+
+#include "fluid_solver/lanes.hpp"
+#include "fluid_solver/particles.hpp"
+#include "fluid_solver/scene.hpp"
+#include "fluid_solver/vector.hpp"
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace duet::fluid {
+
+constexpr std::uint32_t none = ~std::uint32_t{0};
+
+/// One straight piece between two nodes that carry the wall's values.
+struct Segment {
+    Vec2 a, b;
+    std::uint32_t node_a = 0, node_b = 0;
+    std::uint32_t wall = none; ///< index into Config::walls of a named wall
+    double length = 0;
+    double face_start = 0;        ///< arc length along its face where it starts
+    std::uint32_t first_cell = 0; ///< of its wall cells
+    std::uint32_t cells = 0;
+};
+
+/// A maximal run of segments on one line with one thermal condition.
+struct Face {
+    Vec2 a;       ///< where it starts
+    Vec2 tangent; ///< direction of travel
+    Vec2 normal;  ///< from the fluid into the wall
+    double length = 0;
+    std::uint32_t first = 0, segments = 0;
+    bool heated = false; ///< its temperature is known (a wall's or the solid's); adiabatic if not
+};
+
+/// A piece of a segment, about half a spacing long, on which flux and traction are taken.
+struct WallCell {
+    std::uint32_t segment = 0;
+    double centre = 0; ///< along the segment, 0..1
+    double length = 0;
+    Vec2 normal; ///< from the fluid into the wall
+    bool heated = false;
+    std::uint32_t before = none, after = none; ///< neighbours, unless a corner lies between
+};
+
+/// A face as seen by one particle.
+struct Contact {
+    const Face* face = nullptr;
+    double distance = 0; ///< of the particle from the face's line, positive
+    double foot = 0;     ///< arc length of its foot point along the face
+    bool on_face() const { return foot >= 0 && foot <= face->length; }
+};
+
+/// Values of the wall at a point: lanes u, v, 0, T.
+struct WallPoint {
+    Lanes value;
+    Vec2 acceleration;
+    const Segment* segment;
+    double along; ///< of the segment, 0..1
+};
+
+class Boundary {
+  public:
+    /// Throws SceneError if chains and region do not fit each other.
+    Boundary(const Config& config, const std::vector<Chain>& chains, const InterfaceState& state);
+
+    /// Moves the interface. Rebuilds the geometry only if a node has moved.
+    void place(const std::vector<Vec2>& positions);
+
+    /// Sets the values of the interface nodes: velocity, acceleration, temperature.
+    void set_values(std::span<const Vec2> velocity,
+                    std::span<const Vec2> acceleration,
+                    std::span<const double> temperature);
+
+    /// Faces within the support of x that show it their outer side. `contacts` is overwritten.
+    void contacts(Vec2 x, std::vector<Contact>& contacts) const;
+
+    /// Whether any face may lie within the support of a point in the cell of x.
+    bool near(Vec2 x) const {
+        const std::size_t c = grid_.index(x);
+        return candidate_start_[c] != candidate_start_[c + 1];
+    }
+
+    WallPoint at(const Face& face, double arc) const;
+    std::uint32_t cell_at(const Segment& segment, double along) const;
+
+    /// Signed distance of x from the nearest face within the support (positive in the fluid), the
+    /// face and the nearest point on it; `face` is null if none is in range.
+    struct Nearest {
+        const Face* face = nullptr;
+        double distance = 0;
+        Vec2 point;
+        double foot = 0;
+    };
+    Nearest nearest(Vec2 x) const;
+
+    /// Whether x lies in the fluid, by the parity of crossings. O(segments).
+    bool contains(Vec2 x) const;
+    /// Distance of x from the boundary. O(segments).
+    double distance(Vec2 x) const;
+    double area() const;
+
+    const std::vector<Segment>& segments() const { return segments_; }
+    const std::vector<Face>& faces() const { return faces_; }
+    const std::vector<WallCell>& cells() const { return cells_; }
+    const CellGrid& grid() const { return grid_; }
+    std::size_t interface_segments() const { return interface_segments_; }
+    std::size_t interface_nodes() const { return interface_nodes_; }
+    /// Length of each wall of the configuration that is left beside leaning solids.
+    const std::vector<double>& wall_length() const { return wall_length_; }
+    /// Highest and lowest prescribed temperature, over walls and interface.
+    bool heated() const;
+    Vec2 velocity(std::uint32_t node) const { return velocity_[node]; }
+    double temperature(std::uint32_t node) const { return temperature_[node]; }
+
+  private:
+    struct Side {
+        Vec2 a, b;
+        std::uint32_t wall = none;
+    };
+    void assign_walls(const Config& config);
+    void build();
+    void add_chain(const Chain& chain);
+    void add_walls();
+    void add_side(const Side& side);
+    void add_face(std::uint32_t first, std::uint32_t segments, bool heated);
+    void add_cells(std::uint32_t segment, const Face& face);
+    void link_cells(const Chain& chain, std::uint32_t first);
+    void register_faces();
+    double perimeter_position(Vec2 x) const;
+
+    double spacing_, support_;
+    std::vector<Chain> chains_;
+    std::vector<Side> sides_; ///< the region's sides, clockwise, so that the fluid is to the right
+    std::vector<std::string> wall_names_;
+    std::vector<bool> wall_heated_;
+    std::vector<Vec2> wall_velocity_;
+    std::vector<double> wall_temperature_;
+    std::vector<double> wall_length_;
+    std::size_t interface_nodes_ = 0, interface_segments_ = 0;
+
+    std::vector<Vec2> position_; ///< of the interface nodes
+    std::vector<Segment> segments_;
+    std::vector<Face> faces_;
+    std::vector<WallCell> cells_;
+    std::vector<Vec2> velocity_, acceleration_; ///< by node: interface first, then two for a side
+    std::vector<double> temperature_;
+
+    CellGrid grid_;
+    std::vector<std::uint32_t> candidate_start_, candidate_, cursor_;
+};
+
+} // namespace duet::fluid

@@ -1,0 +1,156 @@
+// What can be asked of the fluid: ledgers, fields at points, snapshots.
+
+#include "fluid_solver/implementation.hpp"
+
+#include <Eigen/Dense>
+
+#include <cmath>
+#include <sstream>
+
+namespace duet::fluid {
+
+Ledger Fluid::Implementation::ledger() const {
+    const double m = config.density * volume, capacity = m * config.heat_capacity;
+    const auto count = static_cast<double>(particles.size());
+    const double temperature = sum([&](std::size_t a) { return particles.fields[a].T; });
+    Ledger l = totals_;
+    l.mass = m * count;
+    l.heat = capacity * temperature - initial_heat_;
+    l.mean_temperature = temperature / count;
+    l.kinetic_energy = 0.5 * m * sum([&](std::size_t a) {
+                           const Fields& f = particles.fields[a];
+                           return f.u * f.u + f.v * f.v;
+                       });
+    l.max_speed = speed_;
+    l.sound_speed = sound_speed_;
+    l.particles_outside = static_cast<std::uint64_t>(sum([&](std::size_t a) {
+        const Vec2 x = particles.position(a);
+        return boundary_.near(x) && !boundary_.contains(x) ? 1.0 : 0.0;
+    }));
+    return l;
+}
+
+namespace {
+
+/// Weighted least squares for a quadratic (six terms, scaled by the support) or, with too few
+/// points, a plane or a constant about the point asked for.
+class LocalFit {
+  public:
+    explicit LocalFit(double scale) : scale_(scale) {}
+
+    void add(Vec2 r, double weight, double value) {
+        const double x = r.x / scale_, y = r.y / scale_;
+        Eigen::Matrix<double, 6, 1> row;
+        row << 1, x, y, x * x, x * y, y * y;
+        normal_ += weight * row * row.transpose();
+        right_ += weight * value * row;
+        ++points_;
+    }
+    double value() const {
+        for (const int terms : {6, 3, 1}) {
+            const Eigen::MatrixXd matrix = normal_.topLeftCorner(terms, terms);
+            const Eigen::LDLT<Eigen::MatrixXd> factor(matrix);
+            if (points_ >= terms && factor.rcond() > 1e-10) {
+                return factor.solve(right_.head(terms))[0];
+            }
+        }
+        return std::numeric_limits<double>::quiet_NaN();
+    }
+
+  private:
+    double scale_;
+    Eigen::Matrix<double, 6, 6> normal_ = Eigen::Matrix<double, 6, 6>::Zero();
+    Eigen::Matrix<double, 6, 1> right_ = Eigen::Matrix<double, 6, 1>::Zero();
+    int points_ = 0;
+};
+
+} // namespace
+
+Values Fluid::Implementation::at(Vec2 point) const {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    if (!boundary_.contains(point)) {
+        return {nan, {nan, nan}, nan};
+    }
+    const Kernel& kernel = evaluation_.kernel();
+    const double R = kernel.support();
+    std::vector<Contact> contacts;
+    boundary_.contacts(point, contacts);
+    LocalFit u(R), v(R), p(R), T(R);
+    // The particles have moved by less than a cell since they were sorted: search two cells about.
+    const int column = grid_.column(point.x), row = grid_.row(point.y);
+    for (int j = std::max(0, row - 2); j <= std::min(grid_.rows() - 1, row + 2); ++j) {
+        const int from = std::max(0, column - 2), to = std::min(grid_.columns() - 1, column + 2);
+        for (std::uint32_t a = particles.cell_start()[grid_.index(from, j)];
+             a < particles.cell_start()[grid_.index(to, j) + 1];
+             ++a) {
+            const Vec2 r = particles.position(a) - point;
+            if (norm(r) < R && !Ghosts::hidden(contacts, r)) {
+                const double w = kernel.value(norm(r));
+                const Fields& f = particles.fields[a];
+                u.add(r, w, f.u);
+                v.add(r, w, f.v);
+                p.add(r, w, f.p);
+                T.add(r, w, f.T);
+            }
+        }
+    }
+    // Walls contribute what is known of them, at points half a spacing apart.
+    for (const Contact& contact : contacts) {
+        const Face& face = *contact.face;
+        for (int i = -5; i <= 5; ++i) {
+            const double arc = contact.foot + 0.5 * i * config.spacing;
+            const Vec2 r = face.a + arc * face.tangent - point;
+            if (arc < 0 || arc > face.length || norm(r) >= R) {
+                continue;
+            }
+            const double w = kernel.value(norm(r));
+            const Lanes wall = boundary_.at(face, arc).value;
+            u.add(r, w, wall[0]);
+            v.add(r, w, wall[1]);
+            if (face.heated && heat_) {
+                T.add(r, w, wall[3]);
+            }
+        }
+    }
+    return {T.value(), {u.value(), v.value()}, p.value()};
+}
+
+Snapshot Fluid::Implementation::snapshot() const {
+    const std::size_t n = particles.size();
+    Snapshot s;
+    s.position.resize(n);
+    s.velocity.resize(n);
+    s.temperature.resize(n);
+    s.pressure.resize(n);
+    for (std::size_t a = 0; a < n; ++a) {
+        const std::size_t i = particles.identity[a];
+        const Fields& f = particles.fields[a];
+        s.position[i] = particles.position(a);
+        s.velocity[i] = {f.u, f.v};
+        s.temperature[i] = f.T;
+        s.pressure[i] = f.p;
+    }
+    return s;
+}
+
+std::vector<Phase> Fluid::Implementation::phases() const {
+    return {{"move", phase_seconds_[0]},
+            {"sort", phase_seconds_[1]},
+            {"operators", phase_seconds_[2]},
+            {"inner steps", phase_seconds_[3]},
+            {"walls and closure", phase_seconds_[4]}};
+}
+
+std::vector<std::string> Fluid::Implementation::model() const {
+    std::ostringstream size, physics;
+    size << particles.size() << " fluid particles of " << volume << " m2 at a spacing of "
+         << config.spacing << " m in " << compartments
+         << (compartments == 1 ? " compartment" : " compartments");
+    physics << "incompressible flow by artificial compressibility, "
+            << (heat_ ? "heat" : "no heat (one temperature)") << ", "
+            << (buoyant_ ? "Boussinesq buoyancy" : "no buoyancy");
+    return {
+        size.str(), physics.str(), "formulation: consistent, Wendland C2, support 2.6 spacings"};
+}
+
+} // namespace duet::fluid

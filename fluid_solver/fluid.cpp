@@ -1,0 +1,470 @@
+#include "fluid_solver/fluid.hpp"
+
+#include "fluid_solver/implementation.hpp"
+#include "fluid_solver/shifting.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace duet::fluid {
+
+namespace {
+
+constexpr double courant_flow = 0.3;       ///< of dx/U, outer step
+constexpr double courant_diffusion = 0.15; ///< of dx^2/max(nu, alpha), outer step
+constexpr double courant_sound = 1.2;      ///< of dx/c, inner step (stable to 1.78)
+constexpr double step_tolerance = 1.05;    ///< over the outer limit rather than twice the steps
+
+enum PhaseIndex { moving, sorting, evaluating, inner_steps, walls_and_closure };
+
+/// Adds the time of its own life to a phase.
+class Stamp {
+  public:
+    explicit Stamp(double& seconds) : seconds_(seconds) {}
+    ~Stamp() { seconds_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
+    Stamp(const Stamp&) = delete;
+    Stamp& operator=(const Stamp&) = delete;
+
+  private:
+    using Clock = std::chrono::steady_clock;
+    double& seconds_;
+    Clock::time_point start_ = Clock::now();
+};
+
+/// The configuration itself, if it can be modelled.
+const Config& checked(const Config& c) {
+    if (!(c.spacing > 0) || !(c.density > 0) || !(c.heat_capacity > 0)) {
+        throw SceneError("the fluid's spacing, density and heat capacity must be positive");
+    }
+    if (c.region.size() < 3) {
+        throw SceneError("the fluid's region needs at least three corners");
+    }
+    return c;
+}
+
+} // namespace
+
+Fluid::Implementation::Implementation(const Config& c,
+                                      const std::vector<Chain>& chains,
+                                      const InterfaceState& interface)
+    : config(c), boundary_(checked(c), chains, interface), grid_(boundary_.grid()),
+      evaluation_(c.spacing, c.threads), pressure_(c.threads), wall_estimate_(c.spacing),
+      closure_(1, c.threads), interface_position_(interface.position),
+      interface_velocity_(interface.velocity), interface_acceleration_(interface.position.size()),
+      interface_temperature_(interface.temperature) {
+    heat_ = config.conductivity > 0 && boundary_.heated();
+    buoyant_ = config.thermal_expansion != 0 && norm(config.gravity) > 0;
+    passed.impulse.resize(boundary_.interface_nodes());
+    passed.heat.resize(boundary_.interface_segments());
+    for (std::size_t w = 0; w < config.walls.size(); ++w) {
+        walls.push_back({config.walls[w].name, boundary_.wall_length()[w], 0, 0, {}});
+    }
+    fill();
+    closure_ = Closure(compartments, config.threads);
+    start();
+}
+
+/// To be called whenever the fields were set from outside.
+void Fluid::Implementation::start() {
+    const auto differs = [&](const Fields& f) { return f.T != particles.fields[0].T; };
+    heat_ = config.conductivity > 0
+            && (boundary_.heated()
+                || std::any_of(particles.fields.begin(), particles.fields.end(), differs));
+    level_pressure();
+    measure();
+    sound_speed_ = 0;
+    adapt_sound_speed();
+    initial_heat_ = config.density * config.heat_capacity * volume
+                    * sum([&](std::size_t a) { return particles.fields[a].T; });
+}
+
+void Fluid::Implementation::set_fields(const std::function<Values(Vec2)>& field) {
+    for (std::size_t a = 0; a < particles.size(); ++a) {
+        const Values v = field(particles.position(a));
+        particles.fields[a] = {v.velocity.x, v.velocity.y, v.pressure, v.temperature};
+    }
+    start();
+}
+
+double Fluid::Implementation::stable_step() const {
+    const double dx = config.spacing;
+    const double diffusivity =
+        heat_ ? config.conductivity / (config.density * config.heat_capacity) : 0;
+    const double slowest = std::max(config.kinematic_viscosity, diffusivity);
+    double limit = std::numeric_limits<double>::infinity();
+    if (slowest > 0) {
+        limit = std::min(limit, courant_diffusion * dx * dx / slowest);
+    }
+    if (speed_ > 0) {
+        limit = std::min(limit, courant_flow * dx / speed_);
+    }
+    // Never so long that hundreds of inner steps share one geometry.
+    return std::min(limit, 50 * courant_sound * dx / sound_speed_);
+}
+
+int Fluid::Implementation::advance(double window,
+                                   const InterfaceState& from,
+                                   const InterfaceState& to) {
+    const Motion motion{&from, &to, window};
+    std::fill(passed.impulse.begin(), passed.impulse.end(), Vec2{});
+    std::fill(passed.heat.begin(), passed.heat.end(), 0.0);
+    for (WallReport& wall : walls) {
+        wall.heat_flow = 0;
+        wall.force = {};
+    }
+    int steps = 0;
+    for (double elapsed = 0; elapsed < window; ++steps) {
+        const double left = window - elapsed;
+        const double parts = std::max(1.0, std::ceil(left / (step_tolerance * stable_step())));
+        step(left / parts, elapsed, motion);
+        elapsed = parts == 1 ? window : elapsed + left / parts;
+    }
+    time += window;
+    for (WallReport& wall : walls) {
+        wall.heat += wall.heat_flow;
+        wall.heat_flow /= window;
+        wall.force *= 1 / window;
+    }
+    for (const Vec2 impulse : passed.impulse) {
+        totals_.impulse_from_interface -= impulse;
+        totals_.exchanged_impulse += norm(impulse);
+    }
+    for (const double heat : passed.heat) {
+        totals_.heat_from_interface -= heat;
+        totals_.exchanged_heat += std::abs(heat);
+    }
+    return steps;
+}
+
+/// One outer step: operators on the geometry of its middle, then `n` inner steps with everything
+/// but velocity and pressure frozen.
+void Fluid::Implementation::step(double dt, double elapsed, const Motion& motion) {
+    {
+        const Stamp stamp(phase_seconds_[moving]);
+        move(0.5 * dt, false);
+        place_interface(elapsed + 0.5 * dt, motion);
+        keep_inside();
+    }
+    {
+        const Stamp stamp(phase_seconds_[sorting]);
+        particles.sort(grid_);
+    }
+    {
+        const Stamp stamp(phase_seconds_[evaluating]);
+        evaluate(dt);
+    }
+    {
+        const Stamp stamp(phase_seconds_[inner_steps]);
+        accelerate(dt);
+    }
+    {
+        const Stamp stamp(phase_seconds_[walls_and_closure]);
+        book(dt);
+        correct_fields(dt);
+        level_pressure();
+    }
+    {
+        const Stamp stamp(phase_seconds_[moving]);
+        move(0.5 * dt, true);
+        place_interface(elapsed + dt, motion);
+        keep_inside();
+        measure();
+        adapt_sound_speed();
+    }
+}
+
+void Fluid::Implementation::place_interface(double elapsed, const Motion& motion) {
+    const std::size_t nodes = boundary_.interface_nodes();
+    if (nodes == 0) {
+        return;
+    }
+    const InterfaceState &from = *motion.start, &to = *motion.end;
+    const double w = elapsed / motion.window;
+    for (std::size_t i = 0; i < nodes; ++i) {
+        // From the start plus a difference, so that a node at rest keeps its place to the bit.
+        interface_position_[i] = from.position[i] + w * (to.position[i] - from.position[i]);
+        interface_velocity_[i] = from.velocity[i] + w * (to.velocity[i] - from.velocity[i]);
+        interface_acceleration_[i] = (1 / motion.window) * (to.velocity[i] - from.velocity[i]);
+        interface_temperature_[i] =
+            from.temperature[i] + w * (to.temperature[i] - from.temperature[i]);
+    }
+    put_interface();
+}
+
+void Fluid::Implementation::put_interface() {
+    boundary_.place(interface_position_);
+    boundary_.set_values(interface_velocity_, interface_acceleration_, interface_temperature_);
+}
+
+void Fluid::Implementation::move(double dt, bool with_shift) {
+    for_particles(particles.size(), config.threads, [&](std::size_t a) {
+        const Vec2 shift = with_shift ? evaluation_.shift[a] : Vec2{};
+        particles.x[a] += dt * particles.fields[a].u + shift.x;
+        particles.y[a] += dt * particles.fields[a].v + shift.y;
+    });
+}
+
+/// Puts a particle that has crossed a wall back to a tenth of a spacing before it and takes away
+/// its velocity into the wall; counts it.
+void Fluid::Implementation::keep_inside() {
+    const double clearance = 0.1 * config.spacing;
+    hits_.assign(chunks_of(particles.size()), 0);
+    for_chunks(
+        particles.size(), config.threads, [&](std::size_t c, std::size_t first, std::size_t last) {
+            for (std::size_t a = first; a < last; ++a) {
+                if (!boundary_.near(particles.position(a))) {
+                    continue;
+                }
+                for (int corner = 0; corner < 3; ++corner) {
+                    const auto wall = boundary_.nearest(particles.position(a));
+                    if (wall.face == nullptr || wall.distance > 0) {
+                        break;
+                    }
+                    ++hits_[c];
+                    const Vec2 n = wall.face->normal;
+                    const Lanes moving = boundary_.at(*wall.face, wall.foot).value;
+                    Fields& f = particles.fields[a];
+                    particles.x[a] = wall.point.x - clearance * n.x;
+                    particles.y[a] = wall.point.y - clearance * n.y;
+                    const double into = std::max(0.0, dot({f.u - moving[0], f.v - moving[1]}, n));
+                    f.u -= into * n.x;
+                    f.v -= into * n.y;
+                }
+            }
+        });
+    for (const std::uint32_t hits : hits_) {
+        totals_.wall_hits += hits;
+    }
+}
+
+void Fluid::Implementation::evaluate(double dt) {
+    const double h = evaluation_.kernel().smoothing_length();
+    evaluation_.run(particles,
+                    grid_,
+                    boundary_,
+                    {config.spacing,
+                     volume,
+                     config.kinematic_viscosity,
+                     config.conductivity / (config.density * config.heat_capacity),
+                     shift_factor(h, speed_, dt, config.spacing),
+                     heat_});
+}
+
+void Fluid::Implementation::accelerate(double dt) {
+    InnerSteps inner;
+    inner.count = static_cast<int>(
+        std::max(1.0, std::ceil(dt * sound_speed_ / (courant_sound * config.spacing))));
+    inner.step = dt / inner.count;
+    inner.density = config.density;
+    inner.sound_speed = sound_speed_;
+    inner.expansion_gravity = expansion_gravity();
+    inner.reference_temperature = config.reference_temperature;
+    inner.smoothing_length = evaluation_.kernel().smoothing_length();
+    if (buoyant_) {
+        pressure_.run<true>(particles, evaluation_, inner);
+    } else {
+        pressure_.run<false>(particles, evaluation_, inner);
+    }
+}
+
+/// Books what passes through each wall cell in this step.
+void Fluid::Implementation::book(double dt) {
+    wall_estimate_.run(boundary_,
+                       evaluation_,
+                       particles,
+                       {config.conductivity,
+                        config.density * config.kinematic_viscosity,
+                        config.density,
+                        expansion_gravity(),
+                        config.reference_temperature});
+    passed_heat_.assign(compartments, 0);
+    for (std::size_t c = 0; c < boundary_.cells().size(); ++c) {
+        const WallCell& cell = boundary_.cells()[c];
+        const WallLoad& load = wall_estimate_.loads()[c];
+        const Segment& segment = boundary_.segments()[cell.segment];
+        const double heat = heat_ ? dt * cell.length * load.heat_flux : 0; // into the fluid
+        const Vec2 impulse = (dt * cell.length) * load.traction;           // on the wall
+        passed_heat_[load.compartment] += heat;
+        if (cell.segment < boundary_.interface_segments()) {
+            passed.heat[cell.segment] -= heat;
+            passed.impulse[segment.node_a] += (1 - cell.centre) * impulse;
+            passed.impulse[segment.node_b] += cell.centre * impulse;
+            const Vec2 velocity = (1 - cell.centre) * boundary_.velocity(segment.node_a)
+                                  + cell.centre * boundary_.velocity(segment.node_b);
+            totals_.work_from_interface -= dot(impulse, velocity);
+        } else {
+            totals_.heat_from_walls += heat;
+            if (segment.wall != none) {
+                walls[segment.wall].heat_flow += heat;
+                walls[segment.wall].force += impulse;
+            }
+        }
+    }
+}
+
+/// Advances T, and corrects all fields for the shift: f += dr . grad f.
+void Fluid::Implementation::correct_fields(double dt) {
+    if (heat_) {
+        const double capacity = config.density * config.heat_capacity * volume;
+        for (double& heat : passed_heat_) {
+            heat /= capacity;
+        }
+        const ClosureParts parts =
+            closure_.advance_temperature(particles, evaluation_, dt, passed_heat_);
+        totals_.closure_conduction += capacity * parts.conduction;
+        totals_.closure_conduction_abs += capacity * std::abs(parts.conduction);
+        totals_.closure_shift += capacity * parts.shift;
+        totals_.closure_shift_abs += capacity * std::abs(parts.shift);
+    }
+    for_particles(particles.size(), config.threads, [&](std::size_t a) {
+        const Vec2 dr = evaluation_.shift[a];
+        const Fields &gx = evaluation_.slope_x[a], &gy = evaluation_.slope_y[a];
+        Fields& f = particles.fields[a];
+        f.u += dr.x * gx.u + dr.y * gy.u;
+        f.v += dr.x * gx.v + dr.y * gy.v;
+        f.p += dr.x * gx.p + dr.y * gy.p;
+    });
+}
+
+/// In a closed cavity the pressure is defined up to a constant: takes the mean out of each
+/// compartment.
+void Fluid::Implementation::level_pressure() {
+    if (config.pressure_level == PressureLevel::free) {
+        return;
+    }
+    for (std::size_t k = 0; k < compartments; ++k) {
+        const auto mine = [&](std::size_t a) { return particles.compartment[a] == k; };
+        const double count = sum([&](std::size_t a) { return mine(a) ? 1.0 : 0.0; });
+        const double mean =
+            sum([&](std::size_t a) { return mine(a) ? particles.fields[a].p : 0; }) / count;
+        for_particles(particles.size(), config.threads, [&](std::size_t a) {
+            particles.fields[a].p -= mine(a) ? mean : 0;
+        });
+    }
+}
+
+void Fluid::Implementation::measure() {
+    const std::size_t n = particles.size();
+    extrema_.resize(chunks_of(n));
+    for_chunks(n, config.threads, [&](std::size_t c, std::size_t first, std::size_t last) {
+        std::array<double, 4> e{0, -1e300, -1e300, 0};
+        for (std::size_t a = first; a < last; ++a) {
+            const Fields& f = particles.fields[a];
+            e[0] = std::max(e[0], f.u * f.u + f.v * f.v);
+            e[1] = std::max(e[1], -f.p);
+            e[2] = std::max(e[2], f.p);
+            e[3] += std::isfinite(f.u + f.v + f.p + f.T + particles.x[a] + particles.y[a]) ? 0 : 1;
+        }
+        extrema_[c] = e;
+    });
+    std::array<double, 4> e = extrema_[0];
+    for (const auto& other : extrema_) {
+        e = {std::max(e[0], other[0]),
+             std::max(e[1], other[1]),
+             std::max(e[2], other[2]),
+             e[3] + other[3]};
+    }
+    const double before = speed_;
+    speed_ = std::sqrt(e[0]);
+    pressure_range_ = e[1] + e[2];
+    const double limit = sound_speed_ > 0 ? 2 * std::max(before, sound_speed_) : speed_;
+    if (e[3] > 0 || !(speed_ <= limit)) {
+        std::size_t worst = 0;
+        for (std::size_t a = 0; a < n; ++a) {
+            const Fields& f = particles.fields[a];
+            if (!(f.u * f.u + f.v * f.v < e[0])) {
+                worst = a;
+                break;
+            }
+        }
+        throw Diverged("the fluid diverged after t = " + std::to_string(time) + " s near ("
+                       + std::to_string(particles.x[worst]) + ", "
+                       + std::to_string(particles.y[worst]) + "): speed " + std::to_string(speed_)
+                       + " m/s at a sound speed of " + std::to_string(sound_speed_) + " m/s, "
+                       + std::to_string(static_cast<long>(e[3]))
+                       + " particles not finite; refine the spacing, shorten the window, or raise "
+                         "the sound speed");
+    }
+}
+
+/// c from the flow and the pressure head: c >= 10 U and c^2 >= 10 dp/rho; rises at once and falls
+/// slowly, so that single peaks do not shake it.
+void Fluid::Implementation::adapt_sound_speed() {
+    if (config.sound_speed > 0) {
+        sound_speed_ = config.sound_speed;
+        return;
+    }
+    const double dx = config.spacing;
+    const double temperature_range =
+        sum([&](std::size_t a) {
+            return std::abs(particles.fields[a].T - config.reference_temperature);
+        })
+        / static_cast<double>(particles.size());
+    const double head = norm(expansion_gravity()) * temperature_range * dx;
+    const double viscous = config.kinematic_viscosity / dx;
+    const double wanted = std::max({10 * speed_,
+                                    std::sqrt(10 * pressure_range_ / config.density),
+                                    10 * std::sqrt(head),
+                                    viscous});
+    sound_speed_ = std::max(wanted, 0.99 * sound_speed_);
+}
+
+Fluid::Fluid(const Config& config,
+             const std::vector<Chain>& chains,
+             const InterfaceState& interface)
+    : self_(std::make_unique<Implementation>(config, chains, interface)) {}
+Fluid::~Fluid() = default;
+Fluid::Fluid(Fluid&&) noexcept = default;
+Fluid& Fluid::operator=(Fluid&&) noexcept = default;
+
+void Fluid::set_fields(const std::function<Values(Vec2)>& field) {
+    self_->set_fields(field);
+}
+int Fluid::advance(double window, const InterfaceState& start, const InterfaceState& end) {
+    return self_->advance(window, start, end);
+}
+const InterfaceImpulse& Fluid::passed() const {
+    return self_->passed;
+}
+double Fluid::time() const {
+    return self_->time;
+}
+double Fluid::stable_step() const {
+    return self_->stable_step();
+}
+std::size_t Fluid::size() const {
+    return self_->particles.size();
+}
+std::size_t Fluid::compartments() const {
+    return self_->compartments;
+}
+double Fluid::particle_volume() const {
+    return self_->volume;
+}
+Ledger Fluid::ledger() const {
+    return self_->ledger();
+}
+const std::vector<WallReport>& Fluid::walls() const {
+    return self_->walls;
+}
+std::vector<Phase> Fluid::phases() const {
+    return self_->phases();
+}
+std::vector<std::string> Fluid::model() const {
+    return self_->model();
+}
+Values Fluid::at(Vec2 point) const {
+    return self_->at(point);
+}
+Snapshot Fluid::snapshot() const {
+    return self_->snapshot();
+}
+std::string Fluid::save() const {
+    return self_->save();
+}
+void Fluid::restore(const std::string& state) {
+    self_->restore(state);
+}
+
+} // namespace duet::fluid

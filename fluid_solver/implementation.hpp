@@ -1,0 +1,112 @@
+// The state of the fluid and the pieces that advance it; private to the core.
+
+#pragma once
+
+#include "fluid_solver/boundary.hpp"
+#include "fluid_solver/closure.hpp"
+#include "fluid_solver/evaluation.hpp"
+#include "fluid_solver/fluid.hpp"
+#include "fluid_solver/particles.hpp"
+#include "fluid_solver/pressure.hpp"
+#include "fluid_solver/wall_estimate.hpp"
+
+#include <array>
+#include <vector>
+
+namespace duet::fluid {
+
+class Fluid::Implementation {
+  public:
+    Implementation(const Config& config,
+                   const std::vector<Chain>& chains,
+                   const InterfaceState& interface);
+
+    void set_fields(const std::function<Values(Vec2)>& field);
+    int advance(double window, const InterfaceState& start, const InterfaceState& end);
+    double stable_step() const;
+    Ledger ledger() const;
+    std::vector<std::string> model() const;
+    Values at(Vec2 point) const;
+    Snapshot snapshot() const;
+    std::vector<Phase> phases() const;
+    std::string save() const;
+    void restore(const std::string& state);
+
+    Config config;
+    double time = 0;
+    double volume = 0; ///< of a particle, m2
+    std::size_t compartments = 1;
+    Particles particles;
+    InterfaceImpulse passed;
+    std::vector<WallReport> walls;
+
+  private:
+    /// The interface over the present window, linear in time.
+    struct Motion {
+        const InterfaceState* start = nullptr;
+        const InterfaceState* end = nullptr;
+        double window = 0;
+    };
+
+    // placement.cpp
+    void fill();
+    void disturb();
+    void relax();
+    void find_compartments();
+
+    // fluid.cpp
+    void step(double dt, double elapsed, const Motion& motion);
+    void place_interface(double elapsed, const Motion& motion);
+    void put_interface();
+    void move(double dt, bool with_shift);
+    void keep_inside();
+    void evaluate(double dt);
+    void accelerate(double dt);
+    void book(double dt);
+    void correct_fields(double dt);
+    void level_pressure();
+    void measure();
+    void adapt_sound_speed();
+    void start();
+    Vec2 expansion_gravity() const { return -config.thermal_expansion * config.gravity; }
+
+    /// Sum of term(a) over the particles, in fixed chunks.
+    template <class Term>
+    double sum(const Term& term) const {
+        double total = 0;
+        for (std::size_t first = 0; first < particles.size(); first += chunk_size) {
+            double part = 0;
+            for (std::size_t a = first; a < std::min(particles.size(), first + chunk_size); ++a) {
+                part += term(a);
+            }
+            total += part;
+        }
+        return total;
+    }
+
+    // state.cpp
+    template <class Archive, class Self>
+    static void transfer(Archive& archive, Self& self);
+
+    Boundary boundary_;
+    CellGrid grid_;
+    Evaluation evaluation_;
+    Pressure pressure_;
+    WallEstimate wall_estimate_;
+    Closure closure_;
+    bool heat_ = false, buoyant_ = false;
+    double initial_heat_ = 0; ///< J/m at t = 0
+    double speed_ = 0;        ///< largest, m/s
+    double pressure_range_ = 0;
+    double sound_speed_ = 0;
+    Ledger totals_;                   ///< what accumulates: exchanges, closure, wall hits
+    std::vector<std::uint32_t> hits_; ///< by chunk
+    std::vector<std::array<double, 4>> extrema_; ///< by chunk: speed^2, -p, p, not finite
+    std::vector<double> passed_heat_;            ///< by compartment, in one step
+    std::vector<double> wall_heat_, interface_heat_;
+    std::vector<Vec2> interface_position_, interface_velocity_, interface_acceleration_;
+    std::vector<double> interface_temperature_;
+    std::array<double, 8> phase_seconds_{};
+};
+
+} // namespace duet::fluid

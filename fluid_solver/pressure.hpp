@@ -1,0 +1,51 @@
+// The inner steps: velocity and pressure with the acoustic time step, everything else frozen
+// (docs/theory-fluid.md, "Pressure").
+
+#pragma once
+
+#include "fluid_solver/evaluation.hpp"
+
+#include <vector>
+
+namespace duet::fluid {
+
+/// Parameters of a group of inner steps.
+struct InnerSteps {
+    int count = 1;
+    double step = 0;        ///< s
+    double density = 0;     ///< kg/m3
+    double sound_speed = 0; ///< m/s
+    Vec2 expansion_gravity; ///< -thermal_expansion * gravity: buoyancy per kelvin, m/(s2 K)
+    double reference_temperature = 0;
+    double smoothing_length = 0;
+};
+
+class Pressure {
+  public:
+    explicit Pressure(int threads) : threads_(threads) {}
+
+    /// Advances u, v and p of the particles by `count` steps and leaves the last gradient of p in
+    /// the evaluation's slopes. With Buoyancy the body force follows T + t dT/dt.
+    template <bool Buoyancy>
+    void run(Particles& particles, Evaluation& evaluation, const InnerSteps& inner);
+
+  private:
+    /// Velocity and gradient of p of one particle, gathered together.
+    struct alignas(32) Flow {
+        double u, v, px, py;
+    };
+
+    template <bool Buoyancy>
+    void accelerate(const Particles& particles,
+                    const Evaluation& evaluation,
+                    const InnerSteps& inner,
+                    double time,
+                    std::size_t a);
+    void compress(const Evaluation& evaluation, const InnerSteps& inner, std::size_t a);
+
+    int threads_;
+    std::vector<Flow> flow_;
+    std::vector<double> p_, next_p_;
+};
+
+} // namespace duet::fluid

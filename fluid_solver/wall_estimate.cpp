@@ -1,0 +1,78 @@
+#include "fluid_solver/wall_estimate.hpp"
+
+#include <algorithm>
+
+namespace duet::fluid {
+
+void WallEstimate::Sums::add(double share, const Sums& other) {
+    if (other.w > 0) {
+        compartment = other.compartment;
+    }
+    w += share * other.w;
+    wdd += share * other.wdd;
+    wp += share * other.wp;
+    wd += share * other.wd;
+}
+
+/// Sums over the cells within half_width of the middle of `cell` along the wall, up to the next
+/// corner; a cell that is cut counts with the part that is inside.
+WallEstimate::Sums
+WallEstimate::stretch(const Boundary& boundary, std::uint32_t cell, double half_width) const {
+    const auto& cells = boundary.cells();
+    Sums total;
+    total.add(1, sums_[cell]);
+    const auto walk = [&](std::uint32_t WallCell::*next) {
+        double start = 0.5 * cells[cell].length;
+        for (std::uint32_t c = cells[cell].*next; c != none && c != cell && start < half_width;
+             c = cells[c].*next) {
+            total.add(std::min(1.0, (half_width - start) / cells[c].length), sums_[c]);
+            start += cells[c].length;
+        }
+    };
+    walk(&WallCell::before);
+    walk(&WallCell::after);
+    return total;
+}
+
+/// With w = 1 - d/(1.5 dx): flux k sum w d (T_w - T_a) / sum w d^2, the viscous traction likewise
+/// from the velocity, the pressure extrapolated with its known slope rho (b - a_wall).n.
+void WallEstimate::run(const Boundary& boundary,
+                       const Evaluation& evaluation,
+                       const Particles& particles,
+                       const WallMaterial& material) {
+    sums_.assign(boundary.cells().size(), {});
+    for (const auto& chunk : evaluation.samples) {
+        for (const WallSample& sample : chunk) {
+            const Fields& f = particles.fields[sample.particle];
+            const double d = sample.distance, w = 1 - d / evaluation.sample_depth();
+            const Vec2 n = boundary.cells()[sample.cell].normal;
+            const Vec2 b = (f.T - material.reference_temperature) * material.expansion_gravity;
+            Sums& s = sums_[sample.cell];
+            s.w += w;
+            s.wdd += w * d * d;
+            s.wd += (w * d) * (sample.wall - load(f));
+            s.wp += w * (f.p + material.density * (dot(b, n) - sample.acceleration) * d);
+            s.compartment = particles.compartment[sample.particle];
+        }
+    }
+    loads_.resize(sums_.size());
+    for (std::uint32_t c = 0; c < sums_.size(); ++c) {
+        Sums s = stretch(boundary, c, spacing_);
+        for (int widen = 2; widen <= 4 && s.w == 0; ++widen) {
+            s = stretch(boundary, c, widen * spacing_);
+        }
+        loads_[c] = {};
+        if (s.w == 0) {
+            continue; // a bay too narrow to hold a particle passes nothing
+        }
+        const WallCell& cell = boundary.cells()[c];
+        const double steepness = 1 / s.wdd;
+        const Vec2 slope{steepness * s.wd[0], steepness * s.wd[1]}; // of the velocity, towards n
+        const Vec2 shear = slope - dot(slope, cell.normal) * cell.normal;
+        loads_[c].compartment = s.compartment;
+        loads_[c].heat_flux = cell.heated ? material.conductivity * steepness * s.wd[3] : 0;
+        loads_[c].traction = (s.wp / s.w) * cell.normal - material.dynamic_viscosity * shear;
+    }
+}
+
+} // namespace duet::fluid

@@ -1,0 +1,58 @@
+// Heat flux and traction at the walls, from the particles in the layer next to them
+// (docs/theory-fluid.md, "Wall estimates"). What is booked as passed through a wall is this.
+
+#pragma once
+
+#include "fluid_solver/boundary.hpp"
+#include "fluid_solver/evaluation.hpp"
+#include "fluid_solver/particles.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace duet::fluid {
+
+/// Material and body force as the wall sees them.
+struct WallMaterial {
+    double conductivity = 0;      ///< W/(m K)
+    double dynamic_viscosity = 0; ///< Pa s
+    double density = 0;           ///< kg/m3
+    Vec2 expansion_gravity;       ///< buoyancy per kelvin, m/(s2 K)
+    double reference_temperature = 0;
+};
+
+/// What the fluid does to the wall at one wall cell.
+struct WallLoad {
+    double heat_flux = 0; ///< W/m2, from the wall into the fluid
+    Vec2 traction;        ///< Pa, on the wall
+    std::uint16_t compartment = 0;
+};
+
+class WallEstimate {
+  public:
+    explicit WallEstimate(double spacing) : spacing_(spacing) {}
+
+    /// Loads of all wall cells, from the samples of the last evaluation and the present fields.
+    void run(const Boundary& boundary,
+             const Evaluation& evaluation,
+             const Particles& particles,
+             const WallMaterial& material);
+
+    const std::vector<WallLoad>& loads() const { return loads_; } ///< by wall cell
+
+  private:
+    /// Sums over the samples of one cell, or of a stretch of cells.
+    struct Sums {
+        double w = 0, wdd = 0, wp = 0; ///< sum w, w d^2, w p_wall
+        Lanes wd{};                    ///< sum w d (f_wall - f_a)
+        std::uint16_t compartment = 0;
+        void add(double share, const Sums& other);
+    };
+    Sums stretch(const Boundary& boundary, std::uint32_t cell, double half_width) const;
+
+    double spacing_;
+    std::vector<Sums> sums_;
+    std::vector<WallLoad> loads_;
+};
+
+} // namespace duet::fluid
