@@ -47,9 +47,11 @@ class Mechanics {
     void update_frequency();
     double largest_frequency() const { return frequency_; } ///< rad/s
 
-    std::span<const double> position() const { return position_; }       ///< [N][2] m
-    std::span<const double> velocity() const { return velocity_; }       ///< [N][2] m/s
-    std::span<const double> mass() const { return mass_; }               ///< [N] kg/m
+    std::span<const double> position() const { return position_; } ///< [N][2] m
+    std::span<const double> velocity() const { return velocity_; } ///< [N][2] m/s
+    std::span<const double> mass() const { return mass_; }         ///< [N] kg/m
+    /// [N][2] N/m, -(f_int + f_damp): what the body's own stress does to its nodes.
+    std::span<const double> internal_force() const { return internal_; }
     std::array<double, 2> interface_impulse() const { return impulse_; } ///< N s/m since the start
     double interface_work() const { return work_; }                      ///< J/m since the start
     double kinetic_energy() const;                                       ///< J/m

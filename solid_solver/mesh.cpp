@@ -126,16 +126,9 @@ void check_edges(const Mesh& mesh) {
 /// Each boundary node has one boundary edge in and one out, and lies on no other boundary edge.
 void check_boundary(const Mesh& mesh, double tolerance) {
     const std::vector<Edge> boundary = boundary_edges(mesh);
-    std::vector<int> leaving(mesh.node.size(), 0);
     std::vector<std::uint32_t> order;
     for (const Edge& edge : boundary) {
         order.push_back(edge.a);
-        if (++leaving[edge.a] > 1) {
-            std::ostringstream sentence;
-            sentence << "The boundary meets itself in node " << edge.a << " at "
-                     << place(mesh.node[edge.a]) << "; two triangles must share an edge there.";
-            refuse(sentence);
-        }
     }
     const auto before = [&](std::uint32_t i, double x) { return mesh.node[i].x() < x; };
     std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
@@ -159,6 +152,16 @@ void check_boundary(const Mesh& mesh, double tolerance) {
                 refuse(sentence);
             }
         }
+    }
+    std::vector<bool> left(mesh.node.size(), false);
+    for (const Edge& edge : boundary) {
+        if (left[edge.a]) {
+            std::ostringstream sentence;
+            sentence << "The boundary meets itself in node " << edge.a << " at "
+                     << place(mesh.node[edge.a]) << "; two triangles must share an edge there.";
+            refuse(sentence);
+        }
+        left[edge.a] = true;
     }
 }
 
