@@ -53,11 +53,36 @@ ControlLink::~ControlLink() {
 }
 
 void ControlLink::send(const v1::ToOrchestrator& message) {
-    (void)near_.send(serialize(message), zmq::send_flags::none);
+    posted_.push_back(serialize(message));
+    flush();
+}
+
+void ControlLink::post(const v1::ToOrchestrator& message) {
+    posted_.push_back(serialize(message));
+    flush_if_due();
+}
+
+ControlLink::Clock::time_point ControlLink::flush_due() const {
+    return posted_.empty() ? Clock::time_point::max() : flushed_ + post_patience;
+}
+
+void ControlLink::flush_if_due() {
+    if (Clock::now() >= flush_due())
+        flush();
+}
+
+void ControlLink::flush() {
+    for (std::size_t i = 0; i < posted_.size(); ++i)
+        (void)near_.send(posted_[i],
+                         i + 1 < posted_.size() ? zmq::send_flags::sndmore : zmq::send_flags::none);
+    posted_.clear();
+    flushed_ = Clock::now();
 }
 
 std::optional<v1::ToSolver> ControlLink::receive(Clock::time_point deadline) {
     heed();
+    if (inbox_.empty() && !posted_.empty())
+        flush(); // the orchestrator may wait for just these
     while (inbox_.empty()) {
         if (Clock::now() >= deadline)
             return std::nullopt;
@@ -114,9 +139,10 @@ void ControlLink::run() {
 void ControlLink::forward_to_orchestrator() {
     zmq::message_t frame;
     while (!stopping_ && far_.recv(frame, zmq::recv_flags::dontwait)) {
+        const auto more = frame.more() ? zmq::send_flags::sndmore : zmq::send_flags::none;
         if (frame.size() == 0)
             stopping_ = true;
-        else if (!ending_ && !dealer_.send(frame, zmq::send_flags::none))
+        else if (!ending_ && !dealer_.send(frame, more))
             end("The orchestrator takes no messages; it hangs or was stopped.");
     }
 }

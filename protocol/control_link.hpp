@@ -16,6 +16,7 @@
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <vector>
 
 namespace duet::protocol {
 
@@ -45,7 +46,17 @@ class ControlLink {
     ControlLink(const ControlLink&) = delete;
     ControlLink& operator=(const ControlLink&) = delete;
 
+    /// Hands over a message, to go out at once.
     void send(const v1::ToOrchestrator& message);
+
+    /// Hands over a message that may wait a little for others: with windows shorter than
+    /// post_patience, each wake-up of the thread would cost more than the exchange itself. It goes
+    /// out with the next send(), with a later post(), or by flush_if_due().
+    void post(const v1::ToOrchestrator& message);
+
+    /// For a wait on other sockets: wake up at flush_due() and call flush_if_due().
+    Clock::time_point flush_due() const;
+    void flush_if_due();
 
     /// The next message in order; none when `deadline` passes. Throws as heed().
     std::optional<v1::ToSolver> receive(Clock::time_point deadline);
@@ -59,6 +70,9 @@ class ControlLink {
     Pulse& pulse() { return pulse_; }
 
   private:
+    static constexpr auto post_patience = std::chrono::milliseconds(5);
+
+    void flush();
     void run();
     void forward_to_orchestrator();
     void forward_to_solver();
@@ -67,6 +81,8 @@ class ControlLink {
 
     Pulse pulse_;
     std::deque<v1::ToSolver> inbox_;
+    std::vector<zmq::message_t> posted_;
+    Clock::time_point flushed_{};
     zmq::socket_t near_; // inproc; the solver's thread uses this end, the link's thread the rest
     zmq::socket_t far_;
     zmq::socket_t dealer_;

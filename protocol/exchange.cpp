@@ -2,6 +2,10 @@
 
 #include "protocol/version.hpp"
 
+#include <algorithm>
+#include <array>
+#include <poll.h>
+
 namespace duet::protocol {
 
 Exchange::Exchange(zmq::context_t& context, const v1::Configure& configure, ControlLink& control)
@@ -53,8 +57,7 @@ void Exchange::put() {
     zmq::message_t copy;
     if (record_)
         copy.copy(frame_); // shares the bytes
-    while (!pair_.send(frame_, zmq::send_flags::dontwait))
-        wait(ZMQ_POLLOUT);
+    wait_until([&] { return pair_.send(frame_, zmq::send_flags::dontwait).has_value(); });
     if (record_ && !record_.send(copy, zmq::send_flags::none))
         throw Error(v1::Failed::PEER,
                     "The orchestrator does not take the record of the exchanges; its disk may be "
@@ -62,8 +65,7 @@ void Exchange::put() {
 }
 
 void Exchange::take() {
-    while (!pair_.recv(frame_, zmq::recv_flags::dontwait))
-        wait(ZMQ_POLLIN);
+    wait_until([&] { return pair_.recv(frame_, zmq::recv_flags::dontwait).has_value(); });
     if (frame_.more())
         throw Error(v1::Failed::PEER, "The " + peer_ + " sent a message of several frames.");
     peer_descriptor_ = connection_of(frame_);
@@ -73,16 +75,20 @@ void Exchange::take() {
                         + " bytes that are no message of the protocol.");
 }
 
-/// Until the pair can be read or written.
-void Exchange::wait(short events) {
+template <typename Attempt>
+void Exchange::wait_until(Attempt attempt) {
+    if (attempt())
+        return;
     const auto start = ControlLink::Clock::now();
     const auto deadline =
         start + std::chrono::duration_cast<ControlLink::Clock::duration>(timeout_);
     const char* const phase = control_.pulse().phase.exchange("waiting for the other solver");
     for (;;) {
-        // What the peer sent before it went is in the pipe before the news of its going.
+        control_.flush_if_due();
+        control_.heed();
         monitor_.update();
-        if ((pair_.get(zmq::sockopt::events) & events) != 0)
+        // What the peer sent before it went is in the pipe before the news of its going.
+        if (attempt())
             break;
         if (lost())
             throw Error(v1::Failed::PEER,
@@ -91,17 +97,22 @@ void Exchange::wait(short events) {
             throw Error(v1::Failed::PEER,
                         "The " + peer_ + " has been silent for " + std::to_string(timeout_.count())
                             + " s; it hangs, or its windows take longer than the timeout.");
-        zmq::pollitem_t items[] = {{pair_.handle(), 0, events, 0},
-                                   {control_.socket().handle(), 0, ZMQ_POLLIN, 0},
-                                   {monitor_.socket().handle(), 0, ZMQ_POLLIN, 0}};
-        zmq::poll(items, 3, until(deadline));
-        if (items[0].revents != 0)
+        sleep_until_news(std::min(deadline, control_.flush_due()));
+        if (attempt())
             break;
-        if (items[1].revents != 0)
-            control_.heed();
     }
     control_.pulse().phase = phase;
     waited_ += std::chrono::duration<double>(ControlLink::Clock::now() - start).count();
+}
+
+/// A plain poll of the three sockets' descriptors: zmq::poll would ask each of them several times.
+/// It is right because all that a descriptor may have told of before was looked at since the last
+/// sleep.
+void Exchange::sleep_until_news(ControlLink::Clock::time_point deadline) {
+    std::array<pollfd, 3> descriptors{{{pair_.get(zmq::sockopt::fd), POLLIN, 0},
+                                       {control_.socket().get(zmq::sockopt::fd), POLLIN, 0},
+                                       {monitor_.socket().get(zmq::sockopt::fd), POLLIN, 0}}};
+    ::poll(descriptors.data(), descriptors.size(), static_cast<int>(until(deadline).count()));
 }
 
 bool Exchange::lost() const {

@@ -45,7 +45,9 @@ class Exchange {
     Stamp stamp(const Window& window) const { return {run_id_, false, window}; }
     void put();
     void take();
-    void wait(short events);
+    template <typename Attempt>
+    void wait_until(Attempt attempt);
+    void sleep_until_news(ControlLink::Clock::time_point deadline);
     bool lost() const;
 
     ControlLink& control_;

@@ -207,7 +207,7 @@ class Participant {
         report.set_window(window_.index);
         report.set_time(window_.time + window_.length);
         fill(*report.mutable_timing());
-        control_.send(report_);
+        control_.post(report_);
     }
 
     void save(const v1::Save& order) {

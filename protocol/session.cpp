@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <deque>
 #include <stdexcept>
 #include <vector>
 
@@ -74,6 +75,7 @@ struct Session::State {
     zmq::socket_t record;
     std::array<Seat, 3> seats; // by role
     std::vector<int> watched;
+    std::deque<Event> pending; // read, not yet given
 
     Seat& seat(v1::Role role) { return seats.at(static_cast<std::size_t>(role)); }
     v1::Role role_at(const std::string& identity) const;
@@ -82,7 +84,7 @@ struct Session::State {
     std::optional<Event> next_message();
     std::optional<Event> next_exchange();
     std::optional<Event> next_loss();
-    Event read(const std::string& identity, std::vector<zmq::message_t>& frames);
+    Event read(const std::string& identity, zmq::message_t& frame);
     Event greet(const std::string& identity, int descriptor, Event event);
     Event check(Event event);
     Event refuse(const std::string& identity, Event event, const std::string& sentence);
@@ -212,41 +214,40 @@ std::optional<Event> Session::State::next_now() {
 
 std::optional<Event> Session::State::next_message() {
     zmq::message_t identity;
-    while (router.recv(identity, zmq::recv_flags::dontwait)) {
-        std::vector<zmq::message_t> frames;
-        bool more = identity.more();
-        while (more) {
-            (void)router.recv(frames.emplace_back(), zmq::recv_flags::none);
-            more = frames.back().more();
+    while (pending.empty() && router.recv(identity, zmq::recv_flags::dontwait)) {
+        const std::string sender = identity.to_string();
+        zmq::message_t frame;
+        for (bool more = identity.more(); more; more = frame.more()) {
+            (void)router.recv(frame, zmq::recv_flags::none);
+            const v1::Role role = role_at(sender);
+            const bool over = role != v1::ROLE_UNSPECIFIED && seat(role).phase == Phase::ended;
+            Event event = read(sender, frame);
+            // After its end, all that a solver can still tell is why it failed.
+            if (!over || event.message.has_failed())
+                pending.push_back(std::move(event));
         }
-        Event event = read(identity.to_string(), frames);
-        // After its end, a solver has nothing to say.
-        if (event.role == v1::ROLE_UNSPECIFIED || seat(event.role).phase != Phase::ended
-            || event.message.has_bye())
-            return event;
     }
-    return std::nullopt;
+    if (pending.empty())
+        return std::nullopt;
+    Event event = std::move(pending.front());
+    pending.pop_front();
+    return event;
 }
 
-Event Session::State::read(const std::string& identity, std::vector<zmq::message_t>& frames) {
+Event Session::State::read(const std::string& identity, zmq::message_t& frame) {
     Event event;
     event.role = role_at(identity);
     if (event.role != v1::ROLE_UNSPECIFIED)
         seat(event.role).heard = Clock::now();
-    if (frames.size() != 1 || frames[0].size() == 0
-        || !event.message.ParseFromArray(frames[0].data(), static_cast<int>(frames[0].size()))
+    if (!event.message.ParseFromArray(frame.data(), static_cast<int>(frame.size()))
         || event.message.message_case() == v1::ToOrchestrator::MESSAGE_NOT_SET) {
-        std::size_t bytes = 0;
-        for (const zmq::message_t& frame : frames)
-            bytes += frame.size();
         event.kind = Event::Kind::garbage;
-        event.text = "The " + name_of(event.role) + " sent " + std::to_string(bytes) + " bytes in "
-                     + std::to_string(frames.size())
-                     + " frames that are no message of the protocol.";
+        event.text = "The " + name_of(event.role) + " sent " + std::to_string(frame.size())
+                     + " bytes that are no message of the protocol.";
         return event;
     }
     if (event.message.has_hello())
-        return greet(identity, connection_of(frames[0]), std::move(event));
+        return greet(identity, connection_of(frame), std::move(event));
     return check(std::move(event));
 }
 
@@ -255,21 +256,20 @@ Event Session::State::greet(const std::string& identity, int descriptor, Event e
     const std::string the_solver = "The " + name_of(hello.role()) + " " + hello.solver();
     if (event.role != v1::ROLE_UNSPECIFIED)
         return refuse(identity, std::move(event), the_solver + " said Hello twice.");
-    event.role = hello.role();
     if (hello.role() != v1::ROLE_SOLID && hello.role() != v1::ROLE_FLUID)
         return refuse(
             identity, std::move(event), the_solver + " says it is neither solid nor fluid.");
-    if (!compatible(version(), hello.version())) {
-        return refuse(
-            identity,
-            std::move(event),
-            incompatibility("the orchestrator", version(), hello.solver(), hello.version()));
-    }
     Seat& seat = this->seat(hello.role());
     if (seat.phase != Phase::absent)
         return refuse(identity,
                       std::move(event),
                       the_solver + " is the second of its role; it is not served.");
+    event.role = hello.role();
+    if (!compatible(version(), hello.version()))
+        return refuse(
+            identity,
+            std::move(event),
+            incompatibility("the orchestrator", version(), hello.solver(), hello.version()));
     seat.phase = Phase::configuring;
     seat.identity = identity;
     seat.descriptor = descriptor;
@@ -291,6 +291,8 @@ Event Session::State::check(Event event) {
         seat.phase = Phase::ended;
         return event;
     }
+    if (seat.phase == Phase::ended)
+        return event;
     const std::string the_solver = "The " + name_of(event.role) + " " + seat.solver;
     if (!fits(seat.phase, event.message.message_case()))
         return refuse(seat.identity,

@@ -66,7 +66,7 @@ class Session {
     /// disconnected event has come or will come).
     bool send(v1::Role role, const v1::ToSolver& message);
 
-    /// Said Hello and is not gone.
+    /// Said Hello, and has neither failed nor ended nor gone.
     bool connected(v1::Role role) const;
 
     /// When the solver was last heard of, heartbeats included; Clock::time_point{} before its
