@@ -1,6 +1,7 @@
 // The scene back as a case file, and the page that documents every key.
 
 #include "orchestrator/case_file.hpp"
+#include "orchestrator/figures.hpp"
 #include "orchestrator/schema.hpp"
 
 #include <algorithm>
@@ -213,6 +214,13 @@ A table without required keys is always there, filled with its defaults; the oth
 
 )";
     document(*v1::Scene::descriptor(), "", out);
+    out += "\n## Audit figures\n\nA `[[check]]` names a probe or one of these; besides them every "
+           "number of a "
+           "solver's ledger is there as\n`fluid.<number>` and `solid.<number>`, e.g. "
+           "`fluid.kinetic_energy`.\n\n"
+           "| figure | |\n|---|---|\n";
+    for (const Figure& figure : audit_figures())
+        out += "| " + code(figure.name) + " | " + figure.help + " |\n";
     return out;
 }
 

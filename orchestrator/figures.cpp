@@ -1,33 +1,40 @@
 #include "orchestrator/figures.hpp"
 
+#include "orchestrator/run.hpp"
+#include "protocol/version.hpp"
+
 namespace duet::orchestrator {
 
-const std::vector<Figure>& audit_figures() {
-    static const std::vector<Figure> figures = {
-        {"heat_balance", "largest |heat received by solid + by fluid| / heat exchanged"},
-        {"impulse_balance", "largest |impulse received by solid + by fluid| / impulse exchanged"},
-        {"work_balance", "|work on the solid + on the fluid| / the larger of the two"},
-        {"total_heat_drift", "largest |change of all heat - all heat let in| / heat exchanged"},
-        {"mass_drift", "largest relative change of a solver's mass"},
-        {"waiting_share_fluid", "share of its wall time that the fluid waits for others"},
-        {"waiting_share_solid", "share of its wall time that the solid waits for others"},
-        {"cpu_seconds_fluid", "CPU time of the fluid process, s"},
-        {"cpu_seconds_solid", "CPU time of the solid process, s"},
-        {"peak_memory_fluid", "peak memory of the fluid process, bytes"},
-        {"peak_memory_solid", "peak memory of the solid process, bytes"},
-        {"wall_seconds", "wall time of the run, s"},
-        {"windows", "number of coupling windows"},
-        {"steps_fluid", "number of the fluid's steps"},
-        {"steps_solid", "number of the solid's steps"},
-    };
+std::map<std::string, double> ledger_figures(const v1::Ledger& ledger) {
+    std::map<std::string, double> figures(ledger.figure().begin(), ledger.figure().end());
+    const auto& descriptor = *v1::Ledger::descriptor();
+    for (int i = 0; i < descriptor.field_count(); ++i)
+        if (descriptor.field(i)->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_DOUBLE)
+            figures[descriptor.field(i)->name()] =
+                ledger.GetReflection()->GetDouble(ledger, descriptor.field(i));
     return figures;
 }
 
-std::vector<std::string> audit_figure_names() {
-    std::vector<std::string> names;
-    for (const Figure& figure : audit_figures())
-        names.push_back(figure.name);
-    return names;
+std::map<std::string, double> figures_of(const RunResult& result) {
+    std::map<std::string, double> figures = {
+        {"heat_balance", result.balances.heat},
+        {"impulse_balance", result.balances.impulse},
+        {"work_balance", result.balances.work},
+        {"total_heat_drift", result.balances.total_heat_drift},
+        {"mass_drift", result.balances.mass_drift},
+        {"wall_seconds", result.wall_seconds},
+        {"windows", static_cast<double>(result.windows)},
+    };
+    for (const Player& player : result.players) {
+        const std::string who = protocol::name_of(player.role);
+        figures["waiting_share_" + who] = waiting_share(player);
+        figures["cpu_seconds_" + who] = cpu_seconds(player);
+        figures["peak_memory_" + who] = static_cast<double>(peak_memory(player));
+        figures["steps_" + who] = static_cast<double>(player.steps);
+        for (const auto& [name, value] : ledger_figures(player.ledger))
+            figures[who + "." + name] = value;
+    }
+    return figures;
 }
 
 } // namespace duet::orchestrator

@@ -293,7 +293,9 @@ void Checker::check_quantity(const v1::Check& check,
                     problem(path + ".quantity", "the case has no [" + std::string(role) + "]");
                 return;
             }
-        std::vector<std::string> known = audit_figure_names();
+        std::vector<std::string> known;
+        for (const Figure& figure : audit_figures())
+            known.push_back(figure.name);
         if (std::find(known.begin(), known.end(), name) != known.end())
             return;
         for (const v1::Probe& one : scene_.probe())

@@ -1,0 +1,265 @@
+#include "orchestrator/check_report.hpp"
+
+#include "orchestrator/calendar.hpp"
+#include "orchestrator/geometry.hpp"
+#include "orchestrator/progress.hpp"
+#include "orchestrator/schema.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+namespace duet::orchestrator {
+
+namespace {
+
+// Rough constants of the estimate, from runs on one core of an ordinary machine.
+constexpr double particle_steps_per_second = 1.3e6; // full particle steps a CPU second
+constexpr double node_steps_per_second = 1e8;       // heat steps of a solid's node a CPU second
+constexpr double bytes_per_particle = 1500;
+constexpr double bytes_per_node = 500;
+constexpr double bytes_of_a_process = 30e6;
+constexpr double diffusive_share = 0.15; // outer step: 0.15 spacing^2 / max(nu, alpha)
+constexpr double flow_share = 0.3;       // outer step: 0.3 spacing / speed
+
+std::string number(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g", value);
+    return text;
+}
+
+std::string count(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.0f", value);
+    return text;
+}
+
+double diffusivity(double conductivity, double density, double heat_capacity) {
+    return conductivity / (density * heat_capacity);
+}
+
+double nodes_of(const v1::Body& body) {
+    const double across = std::max(1.0, std::round(body.rectangle().width() / body.element_size()));
+    const double up = std::max(1.0, std::round(body.rectangle().height() / body.element_size()));
+    return (across + 1) * (up + 1);
+}
+
+double solid_area(const v1::Scene& scene) {
+    double sum = 0;
+    for (const v1::Body& body : scene.solid().body())
+        sum += body.rectangle().width() * body.rectangle().height();
+    return sum;
+}
+
+double particles_of(const v1::Scene& scene) {
+    const auto& fluid = scene.fluid();
+    const Polygon region(fluid.region().begin(), fluid.region().end());
+    return (area(region) - solid_area(scene)) / (fluid.spacing() * fluid.spacing());
+}
+
+/// Every temperature of the scene; all equal means that no heat flows.
+std::vector<double> temperatures(const v1::Scene& scene) {
+    std::vector<double> all;
+    if (scene.has_fluid())
+        all.push_back(scene.fluid().initial_temperature());
+    for (const v1::Wall& wall : scene.fluid().wall())
+        if (wall.has_temperature())
+            all.push_back(wall.temperature());
+    for (const v1::Body& body : scene.solid().body()) {
+        all.push_back(body.initial_temperature());
+        for (const v1::Boundary& boundary : body.boundary()) {
+            if (boundary.has_temperature())
+                all.push_back(boundary.temperature());
+            if (boundary.has_convection())
+                all.push_back(boundary.convection().temperature());
+        }
+    }
+    return all;
+}
+
+bool heat_released(const v1::Scene& scene) {
+    for (const v1::Body& body : scene.solid().body()) {
+        if (body.heat_source() != 0)
+            return true;
+        for (const v1::Boundary& boundary : body.boundary())
+            if (boundary.heat_flux() != 0)
+                return true;
+    }
+    return false;
+}
+
+struct Estimate {
+    double temperature_range = 0; // K
+    bool heat = false;
+    bool buoyancy = false;
+    double speed = 0;      // m/s, of free convection or as given
+    double fluid_step = 0; // s
+    double window = 0;     // s
+};
+
+Estimate estimate(const v1::Scene& scene) {
+    Estimate out;
+    const std::vector<double> all = temperatures(scene);
+    const auto [low, high] = std::minmax_element(all.begin(), all.end());
+    out.temperature_range = all.empty() ? 0 : *high - *low;
+    out.heat = out.temperature_range > 0 || heat_released(scene);
+    if (!scene.has_fluid())
+        return out;
+    const v1::Fluid& fluid = scene.fluid();
+    const double gravity = distance(point(0, 0), scene.gravity());
+    out.buoyancy = out.heat && gravity > 0 && fluid.thermal_expansion() > 0;
+    const Polygon region(fluid.region().begin(), fluid.region().end());
+    // Free convection over the height of the cavity at a third of the free fall's speed.
+    if (out.buoyancy)
+        out.speed =
+            std::sqrt(gravity * fluid.thermal_expansion() * out.temperature_range * extent(region))
+            / 3;
+    out.speed = std::max(out.speed, distance(point(0, 0), fluid.initial_velocity()));
+    for (const v1::Wall& wall : fluid.wall())
+        out.speed = std::max(out.speed, distance(point(0, 0), wall.velocity()));
+    const double slowest = std::max(
+        fluid.kinematic_viscosity(),
+        out.heat ? diffusivity(fluid.conductivity(), fluid.density(), fluid.heat_capacity()) : 0);
+    const double dx = fluid.spacing();
+    out.fluid_step = std::min(
+        {scene.time().end(),
+         slowest > 0 ? diffusive_share * dx * dx / slowest
+                     : std::numeric_limits<double>::infinity(),
+         out.speed > 0 ? flow_share * dx / out.speed : std::numeric_limits<double>::infinity()});
+    out.window = scene.time().window() > 0 ? scene.time().window() : out.fluid_step;
+    return out;
+}
+
+void describe_fluid(const v1::Scene& scene, const Estimate& e, std::string& out) {
+    const v1::Fluid& fluid = scene.fluid();
+    out += "fluid   " + count(particles_of(scene)) + " particles, spacing "
+           + number_text(fluid.spacing()) + " m; weakly compressible flow with viscosity\n";
+    out += "        heat: "
+           + std::string(e.heat ? "conduction and convection"
+                                : "left out (one temperature everywhere)")
+           + "; buoyancy: "
+           + (e.buoyancy ? "yes"
+              : !e.heat  ? "left out (no heat)"
+                         : "left out (no gravity or no expansion)")
+           + "\n";
+    for (const v1::Wall& wall : fluid.wall())
+        out += "        wall '" + wall.name() + "': "
+               + (wall.has_temperature() ? number_text(wall.temperature()) + " K" : "adiabatic")
+               + (distance(point(0, 0), wall.velocity()) > 0 ? ", moving\n" : "\n");
+    out += "        all other walls: fixed, no-slip, adiabatic\n";
+}
+
+void describe_solid(const v1::Scene& scene, const Estimate& e, std::string& out) {
+    for (const v1::Body& body : scene.solid().body()) {
+        const bool moves = body.motion() == v1::Body::DEFORMABLE;
+        out += "solid   body '" + body.name() + "': " + count(nodes_of(body)) + " nodes, edge "
+               + number_text(body.element_size()) + " m; mechanics: "
+               + (moves ? "thermo-elastic, finite deformation" : "left out (fixed and rigid)")
+               + "; heat: " + (e.heat ? "conduction" : "left out (one temperature everywhere)")
+               + "\n";
+    }
+}
+
+/// The two limits of the staggered exchange (frozen loads in a window).
+void describe_coupling(const v1::Scene& scene, const Estimate& e, std::string& out) {
+    const v1::Fluid& fluid = scene.fluid();
+    out += "coupling "
+           + choices(*v1::Coupling::descriptor()->FindFieldByName(
+               "schedule"))[static_cast<std::size_t>(scene.coupling().schedule())]
+           + ", windows of about " + number(e.window) + " s\n";
+    for (const v1::Body& body : scene.solid().body()) {
+        if (e.heat && fluid.conductivity() > 0) {
+            // The first layer of the solid must not overshoot:
+            // rho_s c_s dx_s / 2 > window k_f / (0.5 dx).
+            const double longest = body.density() * body.heat_capacity() * body.element_size() / 2
+                                   * 0.5 * fluid.spacing() / fluid.conductivity();
+            out += "        '" + body.name() + "', heat: windows up to " + number(longest)
+                   + " s are stable; " + number(longest / e.window) + " times the window"
+                   + (longest < 1.7 * e.window ? ": TOO CLOSE, shorten time.window" : "") + "\n";
+        }
+        if (body.motion() == v1::Body::DEFORMABLE) {
+            // In a window the fluid reacts with the mass rho_f c window on each area:
+            // rho_s dx_s must exceed it.
+            const double sound = fluid.sound_speed() > 0 ? fluid.sound_speed() : 10 * e.speed;
+            const double mass = fluid.density() * sound * e.window;
+            const double ratio = body.density() * body.element_size() / std::max(mass, 1e-300);
+            out += "        '" + body.name() + "', added mass: the first layer weighs "
+                   + number(ratio) + " times what the fluid moves in a window"
+                   + (ratio < 1 ? ": TOO LIGHT, shorten time.window" : "") + "\n";
+        }
+    }
+}
+
+void describe_cost(const v1::Scene& scene,
+                   const Estimate& e,
+                   std::uint32_t threads,
+                   std::string& out) {
+    double seconds = 0;
+    double bytes = 0;
+    out += "cost    rough, from constants of one core: ";
+    if (scene.has_fluid()) {
+        const double steps = scene.time().end() / std::min(e.fluid_step, e.window);
+        seconds += steps * particles_of(scene) / particle_steps_per_second;
+        bytes += bytes_of_a_process + particles_of(scene) * bytes_per_particle;
+        out += count(steps) + " steps of the fluid, ";
+    }
+    if (scene.has_solid()) {
+        double nodes = 0;
+        double step = scene.time().end();
+        for (const v1::Body& body : scene.solid().body()) {
+            nodes += nodes_of(body);
+            const double h = body.element_size();
+            const double alpha =
+                diffusivity(body.conductivity(), body.density(), body.heat_capacity());
+            if (e.heat && alpha > 0)
+                step = std::min(step, 0.25 * h * h / alpha);
+            if (body.motion() == v1::Body::DEFORMABLE) {
+                const double nu = body.poissons_ratio();
+                const double stiffness =
+                    body.youngs_modulus() * (1 - nu) / ((1 + nu) * (1 - 2 * nu));
+                step = std::min(step, 0.5 * h / std::sqrt(stiffness / body.density()));
+            }
+        }
+        if (e.window > 0)
+            step = std::min(step, e.window);
+        const double steps = scene.time().end() / step;
+        seconds += steps * nodes / node_steps_per_second;
+        bytes += bytes_of_a_process + nodes * bytes_per_node;
+        out += count(steps) + " of the solid, ";
+    }
+    out += duration_text(seconds) + " of CPU time, " + count(bytes / 1e6) + " MB\n";
+    out +=
+        "cores   " + std::to_string(threads) + " threads for each solver"
+        + (scene.has_fluid() && scene.has_solid()
+               ? scene.coupling().schedule() == v1::Coupling::PARALLEL ? " (both advance at once)"
+                                                                       : " (the two take turns)"
+               : "")
+        + "\n";
+}
+
+} // namespace
+
+std::string check_report(const Case& given, std::uint32_t threads) {
+    const v1::Scene& scene = given.scene;
+    const Estimate e = estimate(scene);
+    std::string out = given.name + ": " + scene.title() + "\n\n";
+    out += "time    0 to " + number_text(scene.time().end()) + " s, "
+           + std::to_string(marks_of(scene).size()) + " times at which something is recorded\n";
+    if (scene.has_fluid())
+        describe_fluid(scene, e, out);
+    else
+        out += "fluid   none: no fluid process is started\n";
+    if (scene.has_solid())
+        describe_solid(scene, e, out);
+    else
+        out += "solid   none: no solid process is started\n";
+    if (scene.has_fluid() && scene.has_solid())
+        describe_coupling(scene, e, out);
+    describe_cost(scene, e, threads, out);
+    out += "records " + std::to_string(scene.probe_size()) + " probes, held against references by "
+           + std::to_string(scene.check_size()) + " checks\n";
+    return out;
+}
+
+} // namespace duet::orchestrator
