@@ -173,14 +173,14 @@ void Series::State::append(const Frame& frame) {
 Series::Series(const std::filesystem::path& stem,
                Cell cell,
                const std::map<std::string, std::string>& attributes) {
-    // An XDMF file from before would point into the new, empty data.
+    // An XDMF file from before would point into the new, empty data; and one without a frame makes
+    // ParaView crash, so the new one comes with the first frame.
     std::error_code ignored;
     std::filesystem::remove(with_suffix(stem, ".xdmf"), ignored);
     state_ = std::make_unique<State>(stem, cell);
     for (const auto& [name, value] : attributes)
         state_->file.attribute(name, value);
     state_->file.flush();
-    replace_file(state_->xdmf, xdmf_document(state_->name, ""));
 }
 
 Series::~Series() = default;

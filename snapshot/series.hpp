@@ -42,8 +42,9 @@ struct Frame {
 
 class Series {
   public:
-    /// Creates `stem`.h5 and `stem`.xdmf (replacing both); throws std::runtime_error naming the
-    /// path and the reason. `attributes` (e.g. title, version, units) are stored on the root group.
+    /// Creates `stem`.h5, replacing it and removing `stem`.xdmf, which comes with the first frame;
+    /// throws std::runtime_error naming the path and the reason. `attributes` (e.g. title, version,
+    /// units) are stored on the root group.
     Series(const std::filesystem::path& stem,
            Cell cell,
            const std::map<std::string, std::string>& attributes = {});
@@ -53,8 +54,9 @@ class Series {
 
     /// Appends group /frame_000000 ... with attribute `time` (s) and data sets `position`
     /// [points][3], `connectivity` [cells][1 or 3] (vertices: 0, 1, ...), and one a field
-    /// ([entries] or [entries][components]). Throws std::invalid_argument if sizes or names do not
-    /// fit, std::runtime_error naming the path and the reason if it cannot be written.
+    /// ([entries] or [entries][components]). ParaView wants the frames in the order of time. Throws
+    /// std::invalid_argument if sizes or names do not fit, std::runtime_error naming the path and
+    /// the reason if it cannot be written.
     void append(const Frame& frame);
 
   private:

@@ -29,6 +29,8 @@ def arrays(data, element):
 
 
 def frames(stem, sealed):
+    if not Path(f"{stem}.xdmf").exists():
+        return 0  # it comes with the first frame
     data = h5py.File(f"{stem}.h5", "r")
     grids = xml.parse(f"{stem}.xdmf").getroot().findall("./Domain/Grid/Grid")
     for index, grid in enumerate(grids):

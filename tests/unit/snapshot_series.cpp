@@ -125,6 +125,7 @@ TEST_F(Snapshots, ReplacesAnEarlierSeries) {
     const Numbers position{0, 0};
     for (int frames : {3, 1}) {
         Series series(folder / "s", Cell::vertex);
+        EXPECT_EQ(readable(), "0\n") << "no XDMF is left that points into the old data";
         for (int frame = 0; frame < frames; ++frame)
             series.append({1.0 * frame, position, {}, {}});
     }
