@@ -87,7 +87,11 @@ Symmetric solve3(const std::array<Symmetric, 3>& columns, const Symmetric& right
             d * determinant3({columns[0], columns[1], right})};
 }
 
-/// The largest theta <= 1 for which I + theta (B - I) has eigenvalues within [0.2, 3].
+/// Bounds of B's eigenvalues. Beside an adiabatic wall half of the support is empty and B reaches 4
+/// across the wall in a sound cloud; pulling that back would cost the order.
+constexpr double least_eigenvalue = 0.2, largest_eigenvalue = 6;
+
+/// The largest theta <= 1 for which I + theta (B - I) keeps within these bounds.
 double admissible_part(const Symmetric& B) {
     const double mean = 0.5 * (B[0] + B[2]);
     const double radius = std::hypot(0.5 * (B[0] - B[2]), B[1]);
@@ -96,11 +100,11 @@ double admissible_part(const Symmetric& B) {
         return 0;
     }
     double theta = 1;
-    if (low < 0.2) {
-        theta = std::min(theta, 0.8 / (1 - low));
+    if (low < least_eigenvalue) {
+        theta = std::min(theta, (1 - least_eigenvalue) / (1 - low));
     }
-    if (high > 3) {
-        theta = std::min(theta, 2 / (high - 1));
+    if (high > largest_eigenvalue) {
+        theta = std::min(theta, (largest_eigenvalue - 1) / (high - 1));
     }
     return theta;
 }

@@ -46,7 +46,7 @@ struct LaplacianTensor {
     bool limited = false; ///< B was pulled back towards the unit tensor
 };
 
-/// Solves the three equations for B, keeps its eigenvalues within [0.2, 3], and forms E.
+/// Solves the three equations for B, keeps its eigenvalues within bounds, and forms E.
 LaplacianTensor
 laplacian_tensor(const Moments& moments, const Third& A, const DirichletSums& walls);
 
