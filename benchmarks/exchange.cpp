@@ -35,7 +35,7 @@ constexpr std::size_t nodes = 320;
 constexpr std::size_t motion_bytes = nodes * 5 * sizeof(double);
 constexpr std::size_t load_bytes = nodes * 3 * sizeof(double);
 constexpr std::uint32_t windows_a_lease = 16;
-constexpr std::uint64_t round_size = 512; // windows, then as many bare round trips
+constexpr std::uint64_t round_size = 128; // windows, then as many bare round trips
 constexpr double window_length = 1e-3;    // s
 
 class Solid final : public SolidSolver {
@@ -215,7 +215,7 @@ double median(std::vector<double>& values) {
 } // namespace
 
 int main(int argc, char** argv) {
-    std::uint64_t rounds = 20;
+    std::uint64_t rounds = 80;
     if (argc == 3 && std::string(argv[1]) == "--windows")
         rounds = std::max<std::uint64_t>(1, std::strtoull(argv[2], nullptr, 10) / round_size);
     const SocketFolder folder;
