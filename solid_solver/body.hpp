@@ -65,7 +65,7 @@ class Body {
 
     BodyConfig config_;
     Domains domains_;
-    double area_;
+    double area_ = mesh_area(config_.mesh);
     Heat heat_;
     std::optional<Mechanics> mechanics_;
     std::vector<double> rest_position_, rest_velocity_; ///< of a fixed body
