@@ -112,12 +112,14 @@ void ControlLink::heed() {
 }
 
 void ControlLink::run() {
-    auto next_beat = Clock::now();
+    Clock::time_point last_beat{};
     while (!stopping_) {
+        const std::chrono::duration<double> interval(pulse_.interval.load());
+        const auto next_beat = last_beat + std::chrono::duration_cast<Clock::duration>(interval);
         if (Clock::now() >= next_beat && !ending_) {
             beat();
-            const std::chrono::duration<double> interval(pulse_.interval.load());
-            next_beat = Clock::now() + std::chrono::duration_cast<Clock::duration>(interval);
+            last_beat = Clock::now();
+            continue;
         }
         zmq::pollitem_t items[] = {{far_.handle(), 0, ZMQ_POLLIN, 0},
                                    {monitor_.socket().handle(), 0, ZMQ_POLLIN, 0},

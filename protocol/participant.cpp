@@ -191,6 +191,7 @@ class Participant {
             case Act::advance:
                 phase("advancing");
                 side_.advance(window, report);
+                check_report(report, window); // before anything leaves
                 break;
             case Act::send:
                 side_.send(window, *exchange_);
@@ -203,7 +204,6 @@ class Participant {
     }
 
     void send_report(v1::Report& report) {
-        check_report(report, window_);
         report.set_window(window_.index);
         report.set_time(window_.time + window_.length);
         fill(*report.mutable_timing());

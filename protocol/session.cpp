@@ -242,6 +242,7 @@ Event Session::State::read(const std::string& identity, zmq::message_t& frame) {
     if (!event.message.ParseFromArray(frame.data(), static_cast<int>(frame.size()))
         || event.message.message_case() == v1::ToOrchestrator::MESSAGE_NOT_SET) {
         event.kind = Event::Kind::garbage;
+        event.message.Clear();
         event.text = "The " + name_of(event.role) + " sent " + std::to_string(frame.size())
                      + " bytes that are no message of the protocol.";
         return event;

@@ -5,6 +5,7 @@
 #include <csignal>
 #include <spawn.h>
 #include <sys/wait.h>
+#include <thread>
 #include <unistd.h>
 
 namespace duet::test {
@@ -79,8 +80,6 @@ v1::Scene small_scene() {
 Stage::~Stage() {
     for (const v1::Role role : {v1::ROLE_SOLID, v1::ROLE_FLUID})
         send(role, [](v1::ToSolver& message) { message.mutable_abort()->set_text("Test over."); });
-    for (auto& [role, thread] : threads)
-        thread.join();
 }
 
 void Stage::start(v1::Role role, std::vector<std::string> command) {
@@ -90,15 +89,15 @@ void Stage::start(v1::Role role, std::vector<std::string> command) {
 }
 
 void Stage::start(protocol::SolidSolver& solid) {
-    threads.emplace(v1::ROLE_SOLID, [this, &solid] {
-        status[v1::ROLE_SOLID] = protocol::participate(solid, {session.address(), 5});
+    status[v1::ROLE_SOLID] = std::async(std::launch::async, [this, &solid] {
+        return protocol::participate(solid, {session.address(), 5});
     });
     greet(v1::ROLE_SOLID);
 }
 
 void Stage::start(protocol::FluidSolver& fluid) {
-    threads.emplace(v1::ROLE_FLUID, [this, &fluid] {
-        status[v1::ROLE_FLUID] = protocol::participate(fluid, {session.address(), 5});
+    status[v1::ROLE_FLUID] = std::async(std::launch::async, [this, &fluid] {
+        return protocol::participate(fluid, {session.address(), 5});
     });
     greet(v1::ROLE_FLUID);
 }
@@ -177,6 +176,11 @@ void Stage::finish() {
         const Event event = next();
         ASSERT_TRUE(event.message.has_bye()) << event.text << event.message.ShortDebugString();
     }
+    for (auto& [role, child] : children)
+        EXPECT_EQ(child.wait(5), 0);
+    while (const auto event = session.next(Clock::now() + milliseconds(50)))
+        if (event->kind == Event::Kind::exchange)
+            exchanges.push_back(event->exchange);
 }
 
 Event Stage::next() {

@@ -8,10 +8,10 @@
 #include "protocol/socket_folder.hpp"
 
 #include <functional>
+#include <future>
 #include <map>
 #include <string>
 #include <sys/types.h>
-#include <thread>
 #include <vector>
 
 namespace duet::test {
@@ -64,6 +64,7 @@ struct Stage {
 
     /// Leads both from `first` to `end` - 1 in leases of four, granted ahead; keeps the reports.
     void play(std::uint64_t first, std::uint64_t end);
+    /// Finish and Bye; then the processes must exit with 0, and the last exchanges are taken.
     void finish();
 
     /// The next event that is neither a heartbeat nor an exchange (those are kept), within 5 s;
@@ -83,8 +84,7 @@ struct Stage {
     double timeout = 5;
     double length = 0.01; // of a window
     std::map<v1::Role, Child> children;
-    std::map<v1::Role, std::thread> threads;
-    std::map<v1::Role, int> status; // of the threads
+    std::map<v1::Role, std::future<int>> status; // of the participants in threads
     std::map<v1::Role, std::vector<v1::Report>> reports;
     std::vector<v1::ToPeer> exchanges;
 };

@@ -9,6 +9,7 @@ import time
 
 import numpy as np
 import zmq
+from google.protobuf.message import DecodeError
 
 from .interface_codec import FLUID, NAMES, SOLID, Codec, check_report
 from .messages import v1
@@ -254,13 +255,13 @@ class _Participant:
             elif act == ADVANCE:
                 self._control.phase = "advancing"
                 self._side.advance(window, report)
+                check_report(report, window)  # before anything leaves
             else:
                 self._side.send(window, self._codec, self._data)
             if act == last_of_ours:
                 self._send_report(report)
 
     def _send_report(self, report):
-        check_report(report, self._window)
         report.window = self._window.index
         report.time = self._window.time + self._window.length
         self._fill(report.timing)
@@ -284,8 +285,12 @@ class _Participant:
     def _restore(self, order):
         self._control.phase = "restoring"
         path = os.path.join(self._run_folder, order.path)
-        with open(path, "rb") as file:
-            checkpoint = v1.Checkpoint.FromString(file.read())
+        try:
+            with open(path, "rb") as file:
+                checkpoint = v1.Checkpoint.FromString(file.read())
+        except (OSError, DecodeError) as error:
+            raise Error(v1.Failed.INTERNAL, f"'{path}' is missing or no checkpoint of this "
+                                            "protocol.") from error
         if (checkpoint.role, checkpoint.solver, checkpoint.window) != (
                 self._side.role, self._solver.name, order.window):
             raise Error(v1.Failed.INTERNAL, f"'{path}' holds window {checkpoint.window} of "

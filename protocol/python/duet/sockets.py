@@ -8,6 +8,7 @@ import threading
 import time
 
 import zmq
+from google.protobuf.message import DecodeError
 from zmq.utils.monitor import parse_monitor_message
 
 from .messages import v1
@@ -117,12 +118,12 @@ class ControlLink:
         poller = zmq.Poller()
         for socket in (self._far, self._dealer, self._monitor.news):
             poller.register(socket, zmq.POLLIN)
-        next_beat = time.monotonic()
+        last_beat = float("-inf")
         while self._reason is None:
-            if time.monotonic() >= next_beat:
+            if time.monotonic() >= last_beat + self.interval:
                 self._beat()
-                next_beat = time.monotonic() + self.interval
-            poller.poll(milliseconds_until(next_beat))
+                last_beat = time.monotonic()
+            poller.poll(milliseconds_until(last_beat + self.interval))
             if not self._forward_to_orchestrator():
                 break
             self._forward_to_solver()
@@ -151,7 +152,7 @@ class ControlLink:
             frame = self._dealer.recv()
             try:
                 message = v1.ToSolver.FromString(frame)
-            except Exception:  # the solver's thread will say so
+            except DecodeError:  # the solver's thread will say so
                 message = v1.ToSolver()
             if message.WhichOneof("message") == "abort":
                 self._end(message.abort.text)
@@ -266,6 +267,6 @@ class DataPlane:
 def _parsed(kind, frame, sender):
     try:
         return kind.FromString(frame)
-    except Exception as error:
+    except DecodeError as error:
         raise Error(v1.Failed.PEER, f"The {sender} sent {len(frame)} bytes that are no message of "
                                     "the protocol.") from error
