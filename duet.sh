@@ -68,7 +68,12 @@ watch_log() {
 
 ninja_count() { sed -n 's|^\[\([0-9]*\)/\([0-9]*\)\].*|: \1 of \2 steps|p' "$1" | tail -n 1; }
 ctest_count() { sed -n 's|^ *\([0-9]*\)/\([0-9]*\) Test .*|: \1 of \2|p' "$1" | tail -n 1; }
-no_count() { :; }
+apt_count() {
+    awk '/ newly installed,/ {total = $3}
+         /^Unpacking / {done += 0.5}
+         /^Setting up / {done += 0.5}
+         END {if (total && done) printf ": %d of %d packages", done, total}' "$1"
+}
 
 # ---------------------------------------------------------------------------------------- packages
 
@@ -107,7 +112,7 @@ install_packages() {
             "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
                 apt-get install --yes --no-install-recommends "${missing[@]}"
     } >"$log" 2>&1 </dev/null &
-    watch_log $! "$log" "Installing packages" no_count || {
+    watch_log $! "$log" "Installing packages" apt_count || {
         tail -n 20 "$log" >&2
         die "installing packages failed; the whole log is $log"
     }
