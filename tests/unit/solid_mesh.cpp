@@ -26,6 +26,7 @@ TEST(SolidMesh, RectangleHasTheRightSizes) {
     EXPECT_EQ(mesh.node.back(), Point(7, 5));
     EXPECT_EQ(boundary_edges(mesh).size(), 2u * (80 + 40));
     EXPECT_EQ(refusal(mesh), "");
+    EXPECT_EQ(refusal(rectangle_mesh({0, 0}, 1, 1, 1.0 / 3)), "");
 }
 
 TEST(SolidMesh, ElementSizeIsRoundedToWholeCells) {

@@ -9,8 +9,8 @@ namespace duet::solid {
 namespace {
 
 BodyConfig wide(int threads) {
-    // 20 000 nodes: enough for the loops to be cut in two.
-    BodyConfig config = test::steel_like(rectangle_mesh({1, 1}, 2, 1, 0.01));
+    // 8385 nodes: enough for all loops to be cut in two.
+    BodyConfig config = test::steel_like(rectangle_mesh({1, 1}, 2, 1, 1.0 / 64));
     config.stiffness_damping = 1e-4;
     config.threads = threads;
     return config;

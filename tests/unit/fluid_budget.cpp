@@ -1,0 +1,160 @@
+// Budgets that must close to rounding, compartments, and states that must stay as they are.
+
+#include "fluid_support.hpp"
+
+#include <gtest/gtest.h>
+
+namespace duet::fluid::test {
+namespace {
+
+/// A warm cavity with a cold body in it, buoyant.
+struct Stirred {
+    Config config = closed({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, 0.05, false);
+    std::vector<Chain> chains;
+    InterfaceState state;
+
+    Stirred() {
+        config.walls = {{"left", {0, 0}, {0, 1}, 1.0, {}}};
+        config.kinematic_viscosity = 0.71;
+        config.thermal_expansion = 1;
+        config.gravity = {0, -7.1e4};
+        config.initial_temperature = 0.5;
+        config.reference_temperature = 0.5;
+        square_body({0.4, 0.4}, 0.2, 8, chains, state);
+    }
+};
+
+TEST(FluidBudget, HeatHeldIsHeatPassed) {
+    Stirred scene;
+    Fluid fluid(scene.config, scene.chains, scene.state);
+    double interface = 0, wall = 0;
+    for (int window = 0; window < 20; ++window) {
+        fluid.advance(1e-3, scene.state, scene.state);
+        for (const double heat : fluid.passed().heat) {
+            interface -= heat;
+        }
+        wall += fluid.walls()[0].heat_flow * 1e-3;
+    }
+    const Ledger l = fluid.ledger();
+    EXPECT_GT(l.max_speed, 1) << "the flow must stir, or the shift's part is not tested";
+    EXPECT_GT(l.closure_shift_abs, 0);
+    EXPECT_GT(std::abs(l.heat_from_interface), 1e-3);
+    EXPECT_GT(l.heat_from_walls, 1e-3);
+    const double scale = std::abs(l.heat_from_interface) + l.heat_from_walls;
+    EXPECT_NEAR(l.heat, l.heat_from_interface + l.heat_from_walls, 1e-12 * scale);
+    EXPECT_NEAR(l.heat_from_interface, interface, 1e-14 * scale);
+    EXPECT_NEAR(l.heat_from_walls, wall, 1e-14 * scale);
+    EXPECT_EQ(l.particles_outside, 0u);
+}
+
+TEST(FluidBudget, ImpulseIsTheSumOverTheNodes) {
+    Stirred scene;
+    Fluid fluid(scene.config, scene.chains, scene.state);
+    Vec2 sum;
+    for (int window = 0; window < 5; ++window) {
+        fluid.advance(1e-3, scene.state, scene.state);
+        for (const Vec2 impulse : fluid.passed().impulse) {
+            sum -= impulse;
+        }
+    }
+    const Ledger l = fluid.ledger();
+    EXPECT_GT(norm(sum), 0);
+    EXPECT_NEAR(l.impulse_from_interface.x, sum.x, 1e-13 * l.exchanged_impulse);
+    EXPECT_NEAR(l.impulse_from_interface.y, sum.y, 1e-13 * l.exchanged_impulse);
+    EXPECT_EQ(l.work_from_interface, 0) << "a body at rest does no work";
+}
+
+TEST(FluidBudget, AnAdiabaticCavityKeepsItsHeat) {
+    Config config = closed({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, 0.05, false);
+    config.kinematic_viscosity = 0.71;
+    config.thermal_expansion = 1;
+    config.gravity = {0, -7.1e4};
+    Fluid fluid(config);
+    fluid.set_fields([](Vec2 x) {
+        return Values{
+            std::exp(-20 * ((x.x - 0.4) * (x.x - 0.4) + (x.y - 0.3) * (x.y - 0.3))), {}, 0};
+    });
+    fluid.advance(0.01);
+    EXPECT_GT(fluid.ledger().max_speed, 1);
+    const double held = fluid.ledger().mass * fluid.ledger().mean_temperature;
+    EXPECT_NEAR(fluid.ledger().heat, 0, 1e-13 * held);
+}
+
+TEST(FluidBudget, RestStaysAtRestInAnyPolygon) {
+    // One temperature, but not the reference: buoyancy must be held by the pressure alone.
+    Config config = closed({{0, 0}, {1.1, 0.1}, {1.3, 0.7}, {0.6, 1.2}, {-0.1, 0.6}}, 0.05, false);
+    config.thermal_expansion = 1;
+    config.gravity = {0, -10};
+    config.initial_temperature = 1;
+    config.sound_speed = 30;
+    Fluid fluid(config);
+    fluid.advance(4); // sound crosses 100 times
+    const Ledger l = fluid.ledger();
+    // The hydrostatic field is linear, for which every operator is exact; the sound of the start
+    // dies out as exp(-nu k^2 t / 2), k = pi/1.2: by 1e-6 from sqrt(g H) = 3.5 m/s.
+    EXPECT_LT(l.max_speed, 1e-4);
+    const double slope = (fluid.at({0.5, 0.8}).pressure - fluid.at({0.5, 0.3}).pressure) / 0.5;
+    EXPECT_NEAR(slope, 10, 1e-3);
+    EXPECT_NEAR(fluid.particle_volume() * static_cast<double>(fluid.size()), 1.13, 1e-12);
+}
+
+TEST(FluidBudget, EachCompartmentHasItsOwnPressureAndHeat) {
+    // A band from bottom to top; only its left side is warm.
+    Config config = closed({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, 0.05, false);
+    config.thermal_expansion = 1;
+    config.gravity = {0, -10};
+    const InterfaceState state{
+        {{0.4, 1}, {0.4, 0}, {0.6, 0}, {0.6, 1}}, std::vector<Vec2>(4), {1, 1, 0, 0}};
+    Fluid fluid(config, {{{0, 1}, false}, {{2, 3}, false}}, state);
+    ASSERT_EQ(fluid.compartments(), 2u);
+    ASSERT_EQ(fluid.size(), 320u);
+    fluid.advance(0.05, state, state);
+    const Snapshot s = fluid.snapshot();
+    double left_pressure = 0, right_pressure = 0, left_heat = 0, right_heat = 0;
+    for (std::size_t i = 0; i < fluid.size(); ++i) {
+        const bool on_left = s.position[i].x < 0.5;
+        (on_left ? left_pressure : right_pressure) += s.pressure[i];
+        (on_left ? left_heat : right_heat) += s.temperature[i];
+    }
+    EXPECT_NEAR(left_pressure, 0, 1e-9);
+    EXPECT_NEAR(right_pressure, 0, 1e-9);
+    EXPECT_GT(left_heat, 1);
+    EXPECT_NEAR(right_heat, 0, 1e-12);
+    EXPECT_LT(fluid.passed().heat[0], 0) << "the fluid takes heat from the warm side";
+    EXPECT_NEAR(fluid.passed().heat[1], 0, 1e-14);
+}
+
+TEST(FluidBudget, ALatticeThatFitsIsKept) {
+    Stirred scene;
+    const Fluid fluid(scene.config, scene.chains, scene.state);
+    EXPECT_EQ(fluid.size(), 384u); // (1 - 0.04) / 0.05^2
+    EXPECT_NEAR(fluid.particle_volume(), 0.05 * 0.05, 1e-17);
+}
+
+TEST(FluidBudget, TheMovingWallOfACouetteFlow) {
+    // A lid over a shallow cavity drags the fluid to the right above and it returns below.
+    Config config = closed({{0, 0}, {2, 0}, {2, 1}, {0, 1}}, 0.1, false);
+    config.walls = {{"lid", {0, 1}, {2, 1}, {}, {1, 0}}};
+    config.kinematic_viscosity = 0.1;
+    Fluid fluid(config);
+    fluid.advance(5);
+    EXPECT_GT(fluid.at({1, 0.95}).velocity.x, 0.3);
+    EXPECT_LT(fluid.at({1, 0.4}).velocity.x, 0);
+    EXPECT_LT(fluid.walls()[0].force.x, 0) << "the fluid holds the lid back";
+}
+
+TEST(FluidBudget, DivergenceIsReported) {
+    Config config = closed({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, 0.1, false);
+    config.sound_speed = 1; // far too low for the flow
+    Fluid fluid(config);
+    try {
+        fluid.set_fields([](Vec2 x) { return Values{0, {50 * std::sin(9 * x.y), 0}, 0}; });
+        fluid.advance(1);
+        FAIL() << "nothing was thrown";
+    } catch (const Diverged& error) {
+        EXPECT_NE(std::string(error.what()).find("sound speed"), std::string::npos);
+    }
+}
+
+} // namespace
+} // namespace duet::fluid::test

@@ -1,0 +1,171 @@
+// The ghost sums against an obvious twin: a fine lattice over the whole support, each point of it
+// handed to the segment that the line from the particle crosses first.
+
+#include "fluid_support.hpp"
+
+#include <gtest/gtest.h>
+
+namespace duet::fluid::test {
+namespace {
+
+constexpr double spacing = 0.1;
+
+/// Where the way from x to x + r meets the segment, as a fraction; 2 if it does not.
+double meets(Vec2 x, Vec2 r, const Segment& s) {
+    const Vec2 t = s.b - s.a;
+    const double parallel = cross(r, t);
+    if (parallel == 0) {
+        return 2;
+    }
+    const double fraction = cross(s.a - x, t) / parallel, along = cross(s.a - x, r) / parallel;
+    return fraction > 0 && fraction <= 1 && along >= 0 && along <= 1 ? fraction : 2;
+}
+
+/// Before a long straight wall xi is the vector to the foot point, else to the crossing.
+enum class Place { before_straight_walls, beside_an_edge };
+
+WallSums twin(Vec2 x, const Boundary& boundary, Place place) {
+    const Kernel kernel(support_in_spacings * spacing);
+    WallSums sums{};
+    const double R = kernel.support(), step = spacing / 80;
+    for (double rx = -R + step / 2; rx < R; rx += step) {
+        for (double ry = -R + step / 2; ry < R; ry += step) {
+            const Vec2 r{rx, ry};
+            if (norm(r) >= R) {
+                continue;
+            }
+            double first = 2;
+            Vec2 n;
+            double d1 = 0;
+            for (const Segment& s : boundary.segments()) {
+                const double fraction = meets(x, r, s);
+                if (fraction < first) {
+                    first = fraction;
+                    n = (1 / s.length) * left(s.b - s.a);
+                    d1 = dot(s.a - x, n);
+                }
+            }
+            if (first > 1) {
+                continue;
+            }
+            const double VF = step * step * kernel.slope_over_r(norm(r));
+            const double q = 1 + (dot(r, n) - d1) / std::max(d1, 0.25 * spacing);
+            const Vec2 gradW = -VF * r;
+            const Vec2 xi = place == Place::before_straight_walls ? d1 * n : first * r;
+            sums.C += gradW;
+            sums.velocity.S += q * gradW;
+            sums.velocity.K += 2 * VF * q;
+            sums.velocity.S_xi += outer(q * gradW, xi);
+            sums.velocity.K_xi += (2 * VF * q) * xi;
+            sums.N_n += outer(dot(r, n) * gradW, n);
+        }
+    }
+    return sums;
+}
+
+void expect_near(const Mat2& a, const Mat2& b, double tolerance) {
+    EXPECT_NEAR(a.xx, b.xx, tolerance);
+    EXPECT_NEAR(a.xy, b.xy, tolerance);
+    EXPECT_NEAR(a.yx, b.yx, tolerance);
+    EXPECT_NEAR(a.yy, b.yy, tolerance);
+}
+
+/// Compares at several places. The ghosts' lattice is dx/3, so single sums scatter by a few percent
+/// of the support's whole: 2 % of M's unit, of 1/dx, of 4/dx^2 (the sum of 2 V F over the plane).
+void compare(const Boundary& boundary, Place place, const std::vector<Vec2>& places) {
+    const Ghosts ghosts(spacing);
+    std::vector<Contact> contacts;
+    for (const Vec2 x : places) {
+        ASSERT_TRUE(boundary.contains(x));
+        WallSums got{};
+        boundary.contacts(x, contacts);
+        ghosts.sums(x, boundary, contacts, got);
+        const WallSums expected = twin(x, boundary, place);
+        SCOPED_TRACE("particle at " + std::to_string(x.x) + ", " + std::to_string(x.y));
+        const double scale = 0.02;
+        EXPECT_NEAR(got.C.x, expected.C.x, scale / spacing);
+        EXPECT_NEAR(got.C.y, expected.C.y, scale / spacing);
+        EXPECT_NEAR(got.velocity.S.x, expected.velocity.S.x, 2 * scale / spacing);
+        EXPECT_NEAR(got.velocity.S.y, expected.velocity.S.y, 2 * scale / spacing);
+        EXPECT_NEAR(got.velocity.K, expected.velocity.K, 4 * scale / (spacing * spacing));
+        EXPECT_NEAR(got.velocity.K_xi.x, expected.velocity.K_xi.x, 4 * scale / spacing);
+        EXPECT_NEAR(got.velocity.K_xi.y, expected.velocity.K_xi.y, 4 * scale / spacing);
+        expect_near(got.velocity.S_xi, expected.velocity.S_xi, scale);
+        expect_near(got.N_n, expected.N_n, scale);
+    }
+}
+
+TEST(FluidGhosts, StraightWall) {
+    const Boundary boundary(closed({{0, 0}, {2, 0}, {2, 2}, {0, 2}}, spacing, true), {}, {});
+    compare(
+        boundary, Place::before_straight_walls, {{1, 0.03}, {1, 0.05}, {1.013, 0.11}, {0.9, 0.2}});
+}
+
+TEST(FluidGhosts, StraightWallByDivergenceTheorem) {
+    // int gradW over what lies behind the wall = n int W along the wall.
+    const Ghosts ghosts(spacing);
+    const Kernel kernel(support_in_spacings * spacing);
+    for (const double d1 : {0.03, 0.08, 0.15}) {
+        double integral = 0;
+        const double step = 1e-4;
+        for (double s = -kernel.support() + step / 2; s < kernel.support(); s += step) {
+            integral += step * kernel.value(std::hypot(d1, s));
+        }
+        EXPECT_NEAR(ghosts.straight(d1).C, integral, 0.01 / spacing) << "d1 = " << d1;
+    }
+}
+
+TEST(FluidGhosts, CornerOfTheCavity) {
+    const Boundary boundary(closed({{0, 0}, {2, 0}, {2, 2}, {0, 2}}, spacing, true), {}, {});
+    compare(
+        boundary, Place::beside_an_edge, {{0.05, 0.05}, {0.05, 0.15}, {0.21, 0.04}, {1.93, 0.08}});
+}
+
+TEST(FluidGhosts, AcuteAndObtuseCorners) {
+    const Boundary boundary(closed({{0, 0}, {2, 0}, {0.8, 1.1}}, spacing, true), {}, {});
+    compare(boundary, Place::beside_an_edge, {{0.15, 0.06}, {0.3, 0.1}, {1.6, 0.1}, {0.8, 0.95}});
+}
+
+TEST(FluidGhosts, CornerOfABody) {
+    std::vector<Chain> chains;
+    InterfaceState state;
+    square_body({0.8, 0.8}, 0.5, 10, chains, state);
+    const Boundary boundary(closed({{0, 0}, {2, 0}, {2, 2}, {0, 2}}, spacing, true), chains, state);
+    compare(boundary,
+            Place::beside_an_edge,
+            {{0.75, 0.75}, {0.75, 0.83}, {0.87, 0.74}, {1.35, 0.78}, {0.7, 1.31}});
+}
+
+TEST(FluidGhosts, ThinBodyIsNotSeenThrough) {
+    const double thickness = 0.05;
+    const Chain chain{{0, 1, 2, 3}, true};
+    InterfaceState state{{{0.5, 1}, {1.5, 1}, {1.5, 1 + thickness}, {0.5, 1 + thickness}},
+                         std::vector<Vec2>(4),
+                         std::vector<double>(4)};
+    const Config config = closed({{0, 0}, {2, 0}, {2, 2}, {0, 2}}, spacing, true);
+    const Boundary boundary(config, {chain}, state);
+    compare(boundary, Place::before_straight_walls, {{1, 0.95}});
+    compare(boundary, Place::beside_an_edge, {{1.46, 0.96}, {1.55, 1.02}, {0.47, 1.1}});
+    const Particles particles = cloud(boundary, config, 0);
+    Evaluation evaluation(spacing, 1);
+    evaluation.run(
+        particles, boundary.grid(), boundary, {spacing, spacing * spacing, 1, 1, 0, false});
+    for (std::size_t a = 0; a < particles.size(); ++a) {
+        for (std::size_t k = 0; k < evaluation.count[a]; ++k) {
+            const Vec2 x = particles.position(a);
+            const Vec2 r = particles.position(evaluation.pairs(a)[k].index) - x;
+            for (const Segment& s : boundary.segments()) {
+                EXPECT_GT(meets(x, r, s), 1) << "a pair looks through the body";
+            }
+        }
+    }
+}
+
+TEST(FluidGhosts, NarrowChannelSeesBothWalls) {
+    const Boundary boundary(closed({{0, 0}, {2, 0}, {2, 0.3}, {0, 0.3}}, spacing, true), {}, {});
+    compare(boundary, Place::before_straight_walls, {{1, 0.15}, {1, 0.05}});
+    compare(boundary, Place::beside_an_edge, {{0.1, 0.15}});
+}
+
+} // namespace
+} // namespace duet::fluid::test
