@@ -37,7 +37,7 @@ void expect_second_order(double disorder, double ceiling) {
     const double coarse = slab_error(20, disorder), middle = slab_error(40, disorder),
                  fine = slab_error(80, disorder);
     const double order = 0.5 * std::log2(coarse / fine);
-    RecordProperty("order", std::to_string(order));
+    testing::Test::RecordProperty("order", std::to_string(order));
     EXPECT_GE(order, 1.8) << coarse << ", " << middle << ", " << fine;
     EXPECT_LE(fine, ceiling);
 }
