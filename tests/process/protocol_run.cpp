@@ -6,6 +6,8 @@
 
 #include <cmath>
 #include <cstring>
+#include <fstream>
+#include <iterator>
 
 namespace duet::test {
 namespace {
@@ -104,6 +106,33 @@ INSTANTIATE_TEST_SUITE_P(
                     Cast{"python_cpp_parallel", minimal_python, minimal_cpp, parallel},
                     Cast{"python_python_solid_first", minimal_python, minimal_python, solid_first}),
     [](const auto& parameter) { return parameter.param.name; });
+
+/// The participant that the specification works out is run as it stands there.
+TEST(Readme, ItsParticipantTakesPartInARun) {
+    std::ifstream readme(DUET_SOURCE_DIR "/protocol/README.md");
+    const std::string text{std::istreambuf_iterator<char>(readme), {}};
+    const std::string fence = "```python\n";
+    const auto begin = text.find(fence) + fence.size();
+    const auto end = text.find("```", begin);
+    ASSERT_NE(end, std::string::npos);
+
+    Stage stage;
+    const std::string program = stage.folder.path() / "cooling.py";
+    std::ofstream(program) << text.substr(begin, end - begin);
+    stage.start(solid, minimal_cpp(solid));
+    stage.start(fluid,
+                {"/usr/bin/env",
+                 "PYTHONPATH=" DUET_SOURCE_DIR "/protocol/python",
+                 "/usr/bin/python3",
+                 program});
+    stage.configure_both();
+    stage.play(0, 5);
+    stage.finish();
+    // h (T_fluid - T) = 20 * (300 - 350) on 3 m of outline for 5 windows.
+    const double heat = -3000 * 5 * stage.length;
+    EXPECT_NEAR(stage.reports[solid].back().ledger().heat_from_interface(), heat, 1e-9);
+    EXPECT_NEAR(stage.reports[fluid].back().ledger().heat_from_interface(), -heat, 1e-9);
+}
 
 } // namespace
 } // namespace duet::test
