@@ -187,7 +187,7 @@ Mesh rectangle_mesh(const Point& corner, double width, double height, double ele
     for (std::uint32_t j = 0; j < ny; ++j) {
         for (std::uint32_t i = 0; i < nx; ++i) {
             const std::uint32_t a = j * (nx + 1) + i, b = a + 1, d = a + nx + 1, c = d + 1;
-            if ((i + j) % 2 == 0) {
+            if ((2 * i < nx) == (2 * j < ny)) {
                 mesh.triangle.push_back({a, b, c});
                 mesh.triangle.push_back({a, c, d});
             } else {

@@ -12,7 +12,7 @@ namespace duet::solid {
 /// the same bits however the range is cut: every item computes its own results alone.
 template <class Work>
 void in_pieces(std::size_t count, int threads, const Work& work) {
-    constexpr std::size_t least = 8192;
+    constexpr std::size_t least = 4096;
     const std::size_t pieces = std::min(static_cast<std::size_t>(std::max(threads, 1)),
                                         std::max<std::size_t>(count / least, 1));
     if (pieces == 1) {
