@@ -4,18 +4,24 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <stdexcept>
 
 namespace duet::orchestrator {
 
 namespace {
 
-/// Times k * interval, k = 1, 2, ..., below `end`.
+/// Times k * interval, k = 1, 2, ..., below `end`, to twelve digits: 0.15, not 0.15000000000000002.
 template <class Put>
 void every(double interval, double end, Put put) {
-    if (interval > 0)
-        for (std::uint64_t k = 1; static_cast<double>(k) * interval < end; ++k)
-            put(static_cast<double>(k) * interval);
+    if (interval <= 0)
+        return;
+    for (std::uint64_t k = 1; static_cast<double>(k) * interval < end; ++k) {
+        char text[32];
+        std::snprintf(text, sizeof text, "%.12g", static_cast<double>(k) * interval);
+        put(std::strtod(text, nullptr));
+    }
 }
 
 } // namespace

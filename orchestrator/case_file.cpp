@@ -141,7 +141,8 @@ void Reader::place(const toml::source_region& region, const std::string& path) {
             places_.add(path, found->second);
             return;
         }
-    if (region.begin.line > 0) // tables made on the way have no place of their own
+    // Tables made on the way, and defaults, have no place of their own.
+    if (region.begin.line > 0 && region.path)
         places_.add(path, {places_.find("").source, region.begin.line, region.begin.column});
 }
 

@@ -144,11 +144,21 @@ void Conductor::dismiss() {
     for (Player& player : players_) {
         if (!player.process)
             continue;
+        session_.unwatch(player.process->pidfd());
+        session_.unwatch(player.process->output());
         player.ending = player.process->wait_until(deadline);
         if (!player.ending)
             throw Failure(name_of(player), player.now(), "said goodbye, but does not end");
         if (!player.ending->good)
             throw Failure(name_of(player), player.now(), player.ending->text + " after the run");
+    }
+    // The last copies of exchanges may still be under way.
+    const Clock::time_point last = Clock::now() + milliseconds(500);
+    while (score_.configure.record() && Clock::now() < last) {
+        const auto event = session_.next(Clock::now() + milliseconds(50));
+        if (!event)
+            break;
+        attend(*event);
     }
 }
 

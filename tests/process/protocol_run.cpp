@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -106,6 +107,77 @@ INSTANTIATE_TEST_SUITE_P(
                     Cast{"python_cpp_parallel", minimal_python, minimal_cpp, parallel},
                     Cast{"python_python_solid_first", minimal_python, minimal_python, solid_first}),
     [](const auto& parameter) { return parameter.param.name; });
+
+/// A solid whose first node jumps to x = (windows done)^2, although its velocity is 1.
+class JumpingSolid final : public protocol::SolidSolver {
+  public:
+    std::string name() const override { return "jumping solid"; }
+    void configure(const v1::Configure&,
+                   v1::Ready&,
+                   std::vector<protocol::Chain>& chains,
+                   protocol::InterfaceMotion& start) override {
+        chains = {{{0, 1, 2}, true}};
+        start = {0, std::vector<double>(6, 0), std::vector<double>(6, 1), {7, 8, 9}};
+    }
+    void advance(const protocol::Window& window,
+                 const protocol::InterfaceLoad&,
+                 protocol::InterfaceMotion& end,
+                 v1::Report&) override {
+        end.position[0] = std::pow(static_cast<double>(window.index) + 1, 2);
+    }
+    std::string save() const override { return ""; }
+    void restore(const std::string&) override {}
+    void finish() override {}
+};
+
+/// Keeps what it is told of the first node.
+class WatchingFluid final : public protocol::FluidSolver {
+  public:
+    std::vector<std::array<double, 2>> start_x_and_end_x;
+    std::vector<double> end_time;
+    std::string name() const override { return "watching fluid"; }
+    void configure(const v1::Configure&,
+                   const std::vector<protocol::Chain>&,
+                   const protocol::InterfaceMotion&,
+                   v1::Ready&) override {}
+    void advance(const protocol::Window&,
+                 const protocol::InterfaceMotion& start,
+                 const protocol::InterfaceMotion& end,
+                 protocol::InterfaceLoad& load,
+                 v1::Report&) override {
+        start_x_and_end_x.push_back({start.position[0], end.position[0]});
+        end_time.push_back(end.time);
+        EXPECT_EQ(end.temperature, start.temperature);
+        load.force.assign(6, 0);
+        load.heat_flow.assign(3, 0);
+    }
+    std::string save() const override { return ""; }
+    void restore(const std::string&) override {}
+    void finish() override {}
+};
+
+TEST(FluidSide, KnowsOrGuessesTheEndOfTheWindow) {
+    for (const auto schedule : {fluid_first, solid_first, parallel}) {
+        JumpingSolid jumping;
+        WatchingFluid watching;
+        Stage stage;
+        stage.schedule = schedule;
+        stage.start(jumping);
+        stage.start(watching);
+        stage.configure_both();
+        stage.play(0, 4);
+        stage.finish();
+        ASSERT_EQ(watching.start_x_and_end_x.size(), 4);
+        for (std::size_t k = 0; k < 4; ++k) {
+            const double before = std::pow(static_cast<double>(k), 2);
+            const double after = std::pow(static_cast<double>(k) + 1, 2);
+            const auto& [start_x, end_x] = watching.start_x_and_end_x[k];
+            EXPECT_EQ(start_x, before);
+            EXPECT_DOUBLE_EQ(end_x, schedule == solid_first ? after : before + stage.length);
+            EXPECT_DOUBLE_EQ(watching.end_time[k], static_cast<double>(k + 1) * stage.length);
+        }
+    }
+}
 
 /// The participant that the specification works out is run as it stands there.
 TEST(Readme, ItsParticipantTakesPartInARun) {

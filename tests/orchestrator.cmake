@@ -1,0 +1,4 @@
+duet_test(orchestrator_unit LABEL unit
+    SOURCES unit/orchestrator_case_file.cpp unit/orchestrator_scene_check.cpp unit/orchestrator_calendar.cpp
+            unit/orchestrator_audit.cpp unit/orchestrator_verify.cpp
+    LIBRARIES duet_run)

@@ -1,0 +1,240 @@
+// The checks of a scene as a whole: each fault is found, said with its place, and said alone.
+
+#include "orchestrator/geometry.hpp"
+#include "orchestrator/scene_check.hpp"
+
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+namespace duet::orchestrator {
+namespace {
+
+const std::string good = R"(
+[time]
+end = 1
+
+[fluid]
+spacing = 0.1
+region = [[0, 0], [4, 0], [4, 4], [0, 4]]
+density = 1
+kinematic_viscosity = 1
+
+[[fluid.wall]]
+name = "lid"
+along = [[0, 4], [4, 4]]
+velocity = [1, 0]
+
+[[solid.body]]
+name = "plate"
+rectangle = { corner = [1, 0], width = 2, height = 1 }
+element_size = 0.5
+density = 1
+
+[[solid.body.boundary]]
+name = "foot"
+along = [[1, 0], [3, 0]]
+
+[[probe]]
+name = "p"
+of = "fluid"
+quantity = "temperature"
+at = [2, 2]
+)";
+
+std::string problems(const std::string& text, const std::vector<std::string>& overrides = {}) {
+    try {
+        check_scene(parse_case(text, "case.toml", overrides));
+    } catch (const CaseError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+/// The one fault of the good case with `change`.
+void expect_fault(const std::string& change, const std::string& part) {
+    const std::string text = problems(good, {change});
+    EXPECT_NE(text.find(part), std::string::npos) << change << " gave: " << text;
+    EXPECT_EQ(text.find('\n'), std::string::npos) << change << " gave more: " << text;
+}
+
+TEST(SceneCheck, AGoodCasePasses) {
+    EXPECT_EQ(problems(good), "");
+}
+
+TEST(SceneCheck, ShippedCasesPass) {
+    for (const char* name : {"cases/hot_plate", "cases/two_layers", "tests/process/small"})
+        EXPECT_NO_THROW(check_scene(read_case(std::string(DUET_SOURCE_DIR "/") + name))) << name;
+}
+
+TEST(SceneCheck, Regions) {
+    const std::string without =
+        "[time]\nend = 1\n[fluid]\nspacing = 0.1\ndensity = 1\nkinematic_viscosity = 1\n";
+    const auto fault = [&](const std::string& region) {
+        return problems(without + "region = " + region + "\n");
+    };
+    EXPECT_EQ(fault("[[0, 0], [1, 0], [1, 1], [0.5, 0.2], [0, 1]]"), "");
+    EXPECT_NE(fault("[[0, 0], [1, 1], [1, 0], [0, 1]]").find("crosses"), std::string::npos);
+    EXPECT_NE(fault("[[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]]").find("coincide"),
+              std::string::npos);
+    EXPECT_NE(fault("[[0, 0], [2, 0], [1, 0], [1, 1]]").find("back on itself"), std::string::npos);
+    EXPECT_NE(fault("[[0, 0], [2, 0], [2, 1], [1, 0], [0, 1]]").find("lies on the side"),
+              std::string::npos);
+    EXPECT_NE(fault("[[0, 0], [1, 0], [2, 0]]").find("no simple polygon"), std::string::npos);
+    EXPECT_NE(fault("[[0, 0], [0.1, 0], [0.1, 0.1]]").find("more than half the extent"),
+              std::string::npos);
+}
+
+TEST(SceneCheck, Walls) {
+    expect_fault("fluid.wall[0].along=[[0, 4], [3, 4]]", "no side of fluid.region lies between");
+    expect_fault("fluid.wall[0].along=[[0, 4], [0, 4]]", "two different points");
+    expect_fault("fluid.wall[0].velocity=[1, 1]", "only move along itself");
+    EXPECT_NE(problems(good + "[[fluid.wall]]\nname = 'top'\nalong = [[0, 4], [4, 4]]\n")
+                  .find("share a side"),
+              std::string::npos);
+}
+
+TEST(SceneCheck, Bodies) {
+    expect_fault("solid.body[0].rectangle.corner=[1, -0.5]", "reaches out of fluid.region");
+    expect_fault("solid.body[0].element_size=1.5", "larger than the body's shorter side");
+    expect_fault("solid.body[0].motion=\"deformable\"", "lacks the key 'youngs_modulus'");
+    expect_fault("solid.body[0].initial_velocity=[1, 0]", "cannot have a velocity");
+    expect_fault("solid.body[0].boundary[0].along=[[1, 0.5], [3, 0.5]]",
+                 "no side of the body lies between");
+    const std::string second = "[[solid.body]]\nelement_size = 0.5\ndensity = 1\n";
+    EXPECT_EQ(problems(good + second
+                       + "name = 'b'\nrectangle = { corner = [1, 1], width = 1, height = 1 }\n"),
+              "")
+        << "bodies may touch";
+    EXPECT_NE(problems(good + second
+                       + "name = 'b'\nrectangle = { corner = [2, 0.5], width = 1, height = 1 }\n")
+                  .find("the bodies 'plate' and 'b' overlap"),
+              std::string::npos);
+    EXPECT_NE(problems(good + second
+                       + "name = 'plate'\nrectangle = { corner = [3, 2], width = 1, height = 1 }\n")
+                  .find("the name 'plate' is already taken"),
+              std::string::npos);
+}
+
+TEST(SceneCheck, Probes) {
+    expect_fault("probe[0].at=[5, 2]", "lies outside fluid.region");
+    expect_fault("probe[0].at=[2, 0.5]", "lies in the body 'plate'");
+    expect_fault("probe[0].of=\"solid\"", "lies in no body");
+}
+
+TEST(SceneCheck, ProbeNamesAndPlaces) {
+    EXPECT_EQ(problems(good, {"probe[0].mirror=2.5"}), "");
+    expect_fault("probe[0].mirror=0.5", "the point [-1, 2] (the mirror image) lies outside");
+    expect_fault("probe[0].line=[[1, 2], [2, 2]]", "not both");
+    expect_fault("probe[0].wall=\"lit\"", "there is no wall 'lit'; did you mean 'lid'?");
+    expect_fault("probe[0].body=\"plate\"", "a probe of the fluid takes a wall");
+    expect_fault("probe[0].name=\"a,b\"", "must be a word");
+    EXPECT_NE(problems(good + "[[probe]]\nname = 'p'\nof = 'fluid'\nquantity = 'q'\n")
+                  .find("already taken"),
+              std::string::npos);
+    EXPECT_NE(
+        problems(good + "[[probe]]\nname = 'q'\nof = 'fluid'\nquantity = 'q'\nline = [[1, 2]]\n")
+            .find("two different end points"),
+        std::string::npos);
+    EXPECT_NE(problems("[time]\nend = 1\n[[probe]]\nname = 'q'\nof = 'fluid'\nquantity = 'q'\n")
+                  .find("nothing to model"),
+              std::string::npos);
+}
+
+class Checks : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        folder_ =
+            std::filesystem::temp_directory_path() / ("duet-check-" + std::to_string(::getpid()));
+        std::filesystem::create_directories(folder_);
+        write("good.csv", "# origin\nt, T\n0, 1\n1, 3\n");
+        write("words.csv", "t,T\n0,one\n");
+        write("short.csv", "t,T\n0\n");
+        write("back.csv", "t,T\n1,0\n0,0\n");
+        write("brief.csv", "t,T\n0,0\n0.5,0\n");
+    }
+    void TearDown() override { std::filesystem::remove_all(folder_); }
+    void write(const std::string& name, const std::string& text) {
+        std::ofstream(folder_ / name) << text;
+    }
+
+    std::string with(const std::string& check) {
+        try {
+            check_scene(
+                parse_case(good + "[[check]]\ntolerance = 1\n" + check, folder_ / "case.toml"));
+        } catch (const CaseError& error) {
+            return error.what();
+        }
+        return "";
+    }
+    void expect_fault_with(const std::string& check, const std::string& part) {
+        const std::string text = with(check);
+        EXPECT_NE(text.find(part), std::string::npos) << check << " gave: " << text;
+        EXPECT_EQ(text.find('\n'), std::string::npos) << check << " gave more: " << text;
+    }
+
+    std::filesystem::path folder_;
+};
+
+TEST_F(Checks, GoodOnesPass) {
+    EXPECT_EQ(with("quantity = 'p'\nreference = 'good.csv'\ncolumn = 'T'\nat = [0, 0.5, 1]\n"), "");
+    EXPECT_EQ(with("quantity = 'heat_balance'\nvalue = 0\n"), "");
+    EXPECT_EQ(with("quantity = 'fluid.anything'\nvalue = 0\n"), "");
+}
+
+TEST_F(Checks, Faults) {
+    const std::string of_p = "quantity = 'p'\n";
+    expect_fault_with("quantity = 'heat_ballance'\nvalue = 0\n", "did you mean 'heat_balance'?");
+    expect_fault_with("quantity = 'heat_balance'\nvalue = 0\nat = [1]\n",
+                      "belongs to the whole run");
+    expect_fault_with(of_p + "value = 0\nat = [2]\n", "the time 2 lies outside the run, 0 to 1 s");
+    expect_fault_with(of_p, "either a 'value' or a 'reference'");
+    expect_fault_with(of_p + "value = 1\nreference = 'good.csv'\ncolumn = 'T'\n",
+                      "either a 'value'");
+    expect_fault_with(of_p + "reference = 'good.csv'\ncolumn = 'temperature'\n",
+                      "there is t and T");
+    expect_fault_with(of_p + "reference = 'good.csv'\ncolumn = 'T'\nalong = 'x'\n",
+                      "no column 'x'");
+    expect_fault_with(of_p + "reference = 'words.csv'\ncolumn = 'T'\n",
+                      "words.csv:2: 'one' is not a number");
+    expect_fault_with(of_p + "reference = 'short.csv'\ncolumn = 'T'\n",
+                      "expected 2 numbers, found 1");
+    expect_fault_with(of_p + "reference = 'back.csv'\ncolumn = 'T'\n", "does not ascend");
+    expect_fault_with(of_p + "reference = 'brief.csv'\ncolumn = 'T'\nat = [0.7]\n",
+                      "0.7 lies outside 0 to 0.5");
+}
+
+TEST(Geometry, InsideAndOverlapCountTouchingAsTheySay) {
+    const Polygon l = {
+        point(0, 0), point(2, 0), point(2, 1), point(1, 1), point(1, 2), point(0, 2)};
+    EXPECT_TRUE(inside(l, point(0.5, 1.5), 1e-9));
+    EXPECT_TRUE(inside(l, point(1, 1.5), 1e-9)) << "the boundary belongs to it";
+    EXPECT_FALSE(inside(l, point(1.5, 1.5), 1e-9));
+    EXPECT_EQ(area(l), 3);
+    v1::Rectangle r;
+    *r.mutable_corner() = point(0, 0);
+    r.set_width(2);
+    r.set_height(2);
+    EXPECT_FALSE(rectangle_inside(r, l, 1e-9)) << "all but one corner are inside";
+    r.set_height(1);
+    EXPECT_TRUE(rectangle_inside(r, l, 1e-9));
+    // A rectangle across the notch of a U has its corners inside and its middle outside.
+    const Polygon u = {point(0, 0),
+                       point(3, 0),
+                       point(3, 2),
+                       point(2, 2),
+                       point(2, 1),
+                       point(1, 1),
+                       point(1, 2),
+                       point(0, 2)};
+    *r.mutable_corner() = point(0.5, 0.5);
+    r.set_width(2);
+    r.set_height(1);
+    EXPECT_FALSE(rectangle_inside(r, u, 1e-9));
+}
+
+} // namespace
+} // namespace duet::orchestrator
