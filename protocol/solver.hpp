@@ -92,8 +92,9 @@ class SolidSolver : public Solver {
                            std::vector<Chain>& chains,
                            InterfaceMotion& start) = 0;
 
-    /// Advance over one window under constant loads; give the interface's state at its end and fill
-    /// `report` (steps, stable_step, ledger, samples if asked; not window, time, timing).
+    /// Advance over one window under constant loads; give the interface's state at its end (all of
+    /// it: `end` is an output) and fill `report` (steps, stable_step, ledger, samples if asked; not
+    /// window, time, timing).
     virtual void advance(const Window& window,
                          const InterfaceLoad& load,
                          InterfaceMotion& end,

@@ -6,9 +6,11 @@
 
 #include <array>
 #include <cmath>
+#include <csignal>
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <zmq.hpp>
 
 namespace duet::test {
 namespace {
@@ -108,6 +110,23 @@ INSTANTIATE_TEST_SUITE_P(
                     Cast{"python_python_solid_first", minimal_python, minimal_python, solid_first}),
     [](const auto& parameter) { return parameter.param.name; });
 
+TEST(Tcp, CarriesARunAndTheNewsOfADeath) {
+    zmq::context_t context;
+    zmq::socket_t free_port(context, zmq::socket_type::pair);
+    free_port.bind("tcp://127.0.0.1:*");
+    const std::string data = free_port.get(zmq::sockopt::last_endpoint);
+    free_port.close();
+    Stage stage(data);
+    stage.start(solid, minimal_cpp(solid));
+    stage.start(fluid, minimal_cpp(fluid));
+    stage.configure_both();
+    stage.play(0, 8);
+    stage.lease(solid, 8, 4);
+    stage.children.at(fluid).signal(SIGKILL);
+    const Event event = stage.trouble_of(solid);
+    EXPECT_EQ(event.message.failed().code(), v1::Failed::PEER) << event.text;
+}
+
 /// A solid whose first node jumps to x = (windows done)^2, although its velocity is 1.
 class JumpingSolid final : public protocol::SolidSolver {
   public:
@@ -117,17 +136,25 @@ class JumpingSolid final : public protocol::SolidSolver {
                    std::vector<protocol::Chain>& chains,
                    protocol::InterfaceMotion& start) override {
         chains = {{{0, 1, 2}, true}};
-        start = {0, std::vector<double>(6, 0), std::vector<double>(6, 1), {7, 8, 9}};
+        place(0, start);
     }
     void advance(const protocol::Window& window,
                  const protocol::InterfaceLoad&,
                  protocol::InterfaceMotion& end,
                  v1::Report&) override {
-        end.position[0] = std::pow(static_cast<double>(window.index) + 1, 2);
+        place(static_cast<double>(window.index) + 1, end);
     }
     std::string save() const override { return ""; }
     void restore(const std::string&) override {}
     void finish() override {}
+
+  private:
+    static void place(double windows_done, protocol::InterfaceMotion& motion) {
+        motion.position.assign(6, 0);
+        motion.position[0] = windows_done * windows_done;
+        motion.velocity.assign(6, 1);
+        motion.temperature = {7, 8, 9};
+    }
 };
 
 /// Keeps what it is told of the first node.

@@ -114,7 +114,7 @@ v1::Configure Stage::configuration(v1::Role role) {
     *configure.mutable_scene() = scene;
     configure.set_schedule(schedule);
     if (scene.has_solid() && scene.has_fluid())
-        configure.set_peer_address(folder.address("data"));
+        configure.set_peer_address(data_address);
     configure.set_peer_bind(role == v1::ROLE_SOLID);
     configure.set_run_folder(folder.path());
     configure.set_case_folder(folder.path());

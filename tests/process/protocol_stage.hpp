@@ -45,6 +45,10 @@ v1::Scene small_scene();
 
 struct Stage {
     Stage() : session(folder.address("control"), folder.address("record")) {}
+
+    /// Over TCP; `data` is the address of the data plane.
+    explicit Stage(const std::string& data)
+        : session("tcp://127.0.0.1:*", "tcp://127.0.0.1:*"), data_address(data) {}
     ~Stage();
 
     /// Starts a participant and takes its Hello.
@@ -79,6 +83,7 @@ struct Stage {
 
     protocol::SocketFolder folder;
     Session session;
+    std::string data_address = folder.address("data");
     v1::Scene scene = small_scene();
     v1::Coupling::Schedule schedule = v1::Coupling::FLUID_FIRST;
     double timeout = 5;
