@@ -89,7 +89,10 @@ Values Fluid::Implementation::at(Vec2 point) const {
                 const Fields& f = particles.fields[a];
                 u.add(r, w, f.u);
                 v.add(r, w, f.v);
-                p.add(r, w, f.p);
+                p.add(
+                    r,
+                    w,
+                    f.p + hydrostatics_.pressure(particles.position(a), particles.compartment[a]));
                 T.add(r, w, f.T);
             }
         }
@@ -128,7 +131,7 @@ Snapshot Fluid::Implementation::snapshot() const {
         s.position[i] = particles.position(a);
         s.velocity[i] = {f.u, f.v};
         s.temperature[i] = f.T;
-        s.pressure[i] = f.p;
+        s.pressure[i] = f.p + hydrostatics_.pressure(s.position[i], particles.compartment[a]);
     }
     return s;
 }

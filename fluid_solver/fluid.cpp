@@ -4,8 +4,8 @@
 #include "fluid_solver/shifting.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 
 namespace duet::fluid {
 
@@ -18,18 +18,17 @@ constexpr double step_tolerance = 1.05;    ///< over the outer limit rather than
 
 enum PhaseIndex { moving, sorting, evaluating, inner_steps, walls_and_closure };
 
-/// Adds the time of its own life to a phase.
+/// Adds the CPU time of its own life, all threads together, to a phase.
 class Stamp {
   public:
     explicit Stamp(double& seconds) : seconds_(seconds) {}
-    ~Stamp() { seconds_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
+    ~Stamp() { seconds_ += static_cast<double>(std::clock() - start_) / CLOCKS_PER_SEC; }
     Stamp(const Stamp&) = delete;
     Stamp& operator=(const Stamp&) = delete;
 
   private:
-    using Clock = std::chrono::steady_clock;
     double& seconds_;
-    Clock::time_point start_ = Clock::now();
+    std::clock_t start_ = std::clock();
 };
 
 /// The configuration itself, if it can be modelled.
@@ -50,8 +49,10 @@ Fluid::Implementation::Implementation(const Config& c,
                                       const InterfaceState& interface)
     : config(c), boundary_(checked(c), chains, interface), grid_(boundary_.grid()),
       evaluation_(c.spacing, c.threads), pressure_(c.threads), wall_estimate_(c.spacing),
-      closure_(1, c.threads), interface_position_(interface.position),
-      interface_velocity_(interface.velocity), interface_acceleration_(interface.position.size()),
+      closure_(1, c.threads),
+      hydrostatics_(c.density, c.reference_temperature, -c.thermal_expansion * c.gravity),
+      interface_position_(interface.position), interface_velocity_(interface.velocity),
+      interface_acceleration_(interface.position.size()),
       interface_temperature_(interface.temperature) {
     heat_ = config.conductivity > 0 && boundary_.heated();
     buoyant_ = config.thermal_expansion != 0 && norm(config.gravity) > 0;
@@ -62,6 +63,11 @@ Fluid::Implementation::Implementation(const Config& c,
     }
     fill();
     closure_ = Closure(compartments, config.threads);
+    compartment_size_.assign(compartments, 0);
+    for (const std::uint16_t k : particles.compartment) {
+        compartment_size_[k] += 1;
+    }
+    hydrostatics_.levels.assign(compartments, {config.reference_temperature, {}});
     start();
 }
 
@@ -71,7 +77,7 @@ void Fluid::Implementation::start() {
     heat_ = config.conductivity > 0
             && (boundary_.heated()
                 || std::any_of(particles.fields.begin(), particles.fields.end(), differs));
-    level_pressure();
+    level();
     measure();
     sound_speed_ = 0;
     adapt_sound_speed();
@@ -83,6 +89,11 @@ void Fluid::Implementation::set_fields(const std::function<Values(Vec2)>& field)
     for (std::size_t a = 0; a < particles.size(); ++a) {
         const Values v = field(particles.position(a));
         particles.fields[a] = {v.velocity.x, v.velocity.y, v.pressure, v.temperature};
+    }
+    level();
+    for (std::size_t a = 0; a < particles.size(); ++a) {
+        particles.fields[a].p -=
+            hydrostatics_.pressure(particles.position(a), particles.compartment[a]);
     }
     start();
 }
@@ -162,13 +173,13 @@ void Fluid::Implementation::step(double dt, double elapsed, const Motion& motion
         const Stamp stamp(phase_seconds_[walls_and_closure]);
         book(dt);
         correct_fields(dt);
-        level_pressure();
     }
     {
         const Stamp stamp(phase_seconds_[moving]);
         move(0.5 * dt, true);
         place_interface(elapsed + dt, motion);
         keep_inside();
+        level();
         measure();
         adapt_sound_speed();
     }
@@ -258,8 +269,7 @@ void Fluid::Implementation::accelerate(double dt) {
     inner.step = dt / inner.count;
     inner.density = config.density;
     inner.sound_speed = sound_speed_;
-    inner.expansion_gravity = expansion_gravity();
-    inner.reference_temperature = config.reference_temperature;
+    inner.hydrostatics = &hydrostatics_;
     inner.smoothing_length = evaluation_.kernel().smoothing_length();
     if (buoyant_) {
         pressure_.run<true>(particles, evaluation_, inner);
@@ -270,14 +280,12 @@ void Fluid::Implementation::accelerate(double dt) {
 
 /// Books what passes through each wall cell in this step.
 void Fluid::Implementation::book(double dt) {
-    wall_estimate_.run(boundary_,
-                       evaluation_,
-                       particles,
-                       {config.conductivity,
-                        config.density * config.kinematic_viscosity,
-                        config.density,
-                        expansion_gravity(),
-                        config.reference_temperature});
+    wall_estimate_.run(
+        boundary_,
+        evaluation_,
+        particles,
+        hydrostatics_,
+        {config.conductivity, config.density * config.kinematic_viscosity, config.density});
     passed_heat_.assign(compartments, 0);
     for (std::size_t c = 0; c < boundary_.cells().size(); ++c) {
         const WallCell& cell = boundary_.cells()[c];
@@ -328,18 +336,26 @@ void Fluid::Implementation::correct_fields(double dt) {
 }
 
 /// In a closed cavity the pressure is defined up to a constant: takes the mean out of each
-/// compartment.
-void Fluid::Implementation::level_pressure() {
+/// compartment, and finds the levels of the hydrostatic part.
+void Fluid::Implementation::level() {
     if (config.pressure_level == PressureLevel::free) {
         return;
     }
     for (std::size_t k = 0; k < compartments; ++k) {
-        const auto mine = [&](std::size_t a) { return particles.compartment[a] == k; };
-        const double count = sum([&](std::size_t a) { return mine(a) ? 1.0 : 0.0; });
-        const double mean =
-            sum([&](std::size_t a) { return mine(a) ? particles.fields[a].p : 0; }) / count;
+        const auto mean = [&](const auto& value) {
+            const auto of_compartment = [&](std::size_t a) {
+                return particles.compartment[a] == k ? value(a) : 0.0;
+            };
+            return sum(of_compartment) / compartment_size_[k];
+        };
+        const double p = mean([&](std::size_t a) { return particles.fields[a].p; });
+        if (buoyant_) {
+            hydrostatics_.levels[k] = {mean([&](std::size_t a) { return particles.fields[a].T; }),
+                                       {mean([&](std::size_t a) { return particles.x[a]; }),
+                                        mean([&](std::size_t a) { return particles.y[a]; })}};
+        }
         for_particles(particles.size(), config.threads, [&](std::size_t a) {
-            particles.fields[a].p -= mine(a) ? mean : 0;
+            particles.fields[a].p -= particles.compartment[a] == k ? p : 0;
         });
     }
 }
@@ -396,12 +412,12 @@ void Fluid::Implementation::adapt_sound_speed() {
         return;
     }
     const double dx = config.spacing;
-    const double temperature_range =
+    const double departure =
         sum([&](std::size_t a) {
-            return std::abs(particles.fields[a].T - config.reference_temperature);
+            return norm(hydrostatics_.departure(particles.fields[a].T, particles.compartment[a]));
         })
         / static_cast<double>(particles.size());
-    const double head = norm(expansion_gravity()) * temperature_range * dx;
+    const double head = departure * dx;
     const double viscous = config.kinematic_viscosity / dx;
     const double wanted = std::max({10 * speed_,
                                     std::sqrt(10 * pressure_range_ / config.density),

@@ -6,6 +6,7 @@
 #include "fluid_solver/closure.hpp"
 #include "fluid_solver/evaluation.hpp"
 #include "fluid_solver/fluid.hpp"
+#include "fluid_solver/hydrostatics.hpp"
 #include "fluid_solver/particles.hpp"
 #include "fluid_solver/pressure.hpp"
 #include "fluid_solver/wall_estimate.hpp"
@@ -64,11 +65,10 @@ class Fluid::Implementation {
     void accelerate(double dt);
     void book(double dt);
     void correct_fields(double dt);
-    void level_pressure();
+    void level();
     void measure();
     void adapt_sound_speed();
     void start();
-    Vec2 expansion_gravity() const { return -config.thermal_expansion * config.gravity; }
 
     /// Sum of term(a) over the particles, in fixed chunks.
     template <class Term>
@@ -94,6 +94,7 @@ class Fluid::Implementation {
     Pressure pressure_;
     WallEstimate wall_estimate_;
     Closure closure_;
+    Hydrostatics hydrostatics_;
     bool heat_ = false, buoyant_ = false;
     double initial_heat_ = 0; ///< J/m at t = 0
     double speed_ = 0;        ///< largest, m/s
@@ -102,6 +103,7 @@ class Fluid::Implementation {
     Ledger totals_;                   ///< what accumulates: exchanges, closure, wall hits
     std::vector<std::uint32_t> hits_; ///< by chunk
     std::vector<std::array<double, 4>> extrema_; ///< by chunk: speed^2, -p, p, not finite
+    std::vector<double> compartment_size_;       ///< particles of each
     std::vector<double> passed_heat_;            ///< by compartment, in one step
     std::vector<double> wall_heat_, interface_heat_;
     std::vector<Vec2> interface_position_, interface_velocity_, interface_acceleration_;

@@ -94,7 +94,8 @@ constexpr double least_eigenvalue = 0.2, largest_eigenvalue = 6;
 /// The largest theta <= 1 for which I + theta (B - I) keeps within these bounds.
 double admissible_part(const Symmetric& B) {
     const double mean = 0.5 * (B[0] + B[2]);
-    const double radius = std::hypot(0.5 * (B[0] - B[2]), B[1]);
+    const double half = 0.5 * (B[0] - B[2]);
+    const double radius = std::sqrt(half * half + B[1] * B[1]);
     const double low = mean - radius, high = mean + radius;
     if (!std::isfinite(radius + mean)) {
         return 0;

@@ -30,7 +30,7 @@ void Pressure::accelerate(const Particles& particles,
     Vec2 b;
     if constexpr (Buoyancy) {
         const double T = particles.fields[a].T + time * evaluation.heating[a];
-        b = (T - inner.reference_temperature) * inner.expansion_gravity;
+        b = inner.hydrostatics->departure(T, particles.compartment[a]);
     }
     Vec2 gradient = evaluation.L[a] * Vec2{rx, ry};
     if (evaluation.near_wall[a]) {

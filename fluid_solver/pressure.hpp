@@ -4,6 +4,7 @@
 #pragma once
 
 #include "fluid_solver/evaluation.hpp"
+#include "fluid_solver/hydrostatics.hpp"
 
 #include <vector>
 
@@ -15,8 +16,7 @@ struct InnerSteps {
     double step = 0;        ///< s
     double density = 0;     ///< kg/m3
     double sound_speed = 0; ///< m/s
-    Vec2 expansion_gravity; ///< -thermal_expansion * gravity: buoyancy per kelvin, m/(s2 K)
-    double reference_temperature = 0;
+    const Hydrostatics* hydrostatics = nullptr;
     double smoothing_length = 0;
 };
 

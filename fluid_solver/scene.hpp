@@ -116,7 +116,7 @@ struct Snapshot {
     std::vector<double> pressure;
 };
 
-/// CPU-independent wall-clock seconds spent in one phase of the step since the start.
+/// CPU seconds, all threads together, spent in one phase of the step since the start.
 struct Phase {
     std::string name;
     double seconds = 0;

@@ -84,6 +84,7 @@ void Fluid::Implementation::transfer(Archive& archive, Self& self) {
     archive(self.interface_velocity_);
     archive(self.interface_acceleration_);
     archive(self.interface_temperature_);
+    archive(self.hydrostatics_.levels);
     archive(self.passed.impulse);
     archive(self.passed.heat);
     archive(self.speed_);

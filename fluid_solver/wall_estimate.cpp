@@ -39,6 +39,7 @@ WallEstimate::stretch(const Boundary& boundary, std::uint32_t cell, double half_
 void WallEstimate::run(const Boundary& boundary,
                        const Evaluation& evaluation,
                        const Particles& particles,
+                       const Hydrostatics& hydrostatics,
                        const WallMaterial& material) {
     sums_.assign(boundary.cells().size(), {});
     for (const auto& chunk : evaluation.samples) {
@@ -46,13 +47,16 @@ void WallEstimate::run(const Boundary& boundary,
             const Fields& f = particles.fields[sample.particle];
             const double d = sample.distance, w = 1 - d / evaluation.sample_depth();
             const Vec2 n = boundary.cells()[sample.cell].normal;
-            const Vec2 b = (f.T - material.reference_temperature) * material.expansion_gravity;
+            const std::uint16_t compartment = particles.compartment[sample.particle];
+            const double p =
+                f.p + hydrostatics.pressure(particles.position(sample.particle), compartment);
+            const double slope = dot(hydrostatics.force(f.T), n) - sample.acceleration;
             Sums& s = sums_[sample.cell];
             s.w += w;
             s.wdd += w * d * d;
             s.wd += (w * d) * (sample.wall - load(f));
-            s.wp += w * (f.p + material.density * (dot(b, n) - sample.acceleration) * d);
-            s.compartment = particles.compartment[sample.particle];
+            s.wp += w * (p + material.density * slope * d);
+            s.compartment = compartment;
         }
     }
     loads_.resize(sums_.size());

@@ -5,6 +5,7 @@
 
 #include "fluid_solver/boundary.hpp"
 #include "fluid_solver/evaluation.hpp"
+#include "fluid_solver/hydrostatics.hpp"
 #include "fluid_solver/particles.hpp"
 
 #include <cstdint>
@@ -12,13 +13,11 @@
 
 namespace duet::fluid {
 
-/// Material and body force as the wall sees them.
+/// Material as the wall sees it.
 struct WallMaterial {
     double conductivity = 0;      ///< W/(m K)
     double dynamic_viscosity = 0; ///< Pa s
     double density = 0;           ///< kg/m3
-    Vec2 expansion_gravity;       ///< buoyancy per kelvin, m/(s2 K)
-    double reference_temperature = 0;
 };
 
 /// What the fluid does to the wall at one wall cell.
@@ -36,6 +35,7 @@ class WallEstimate {
     void run(const Boundary& boundary,
              const Evaluation& evaluation,
              const Particles& particles,
+             const Hydrostatics& hydrostatics,
              const WallMaterial& material);
 
     const std::vector<WallLoad>& loads() const { return loads_; } ///< by wall cell

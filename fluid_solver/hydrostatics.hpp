@@ -1,0 +1,46 @@
+// The part of the pressure that a compartment's mean buoyancy makes. It is known, so it is added to
+// what is told and left out of what is carried: only departures from it move the fluid, and the
+// sound speed need not cope with it (docs/theory-fluid.md, "Pressure").
+
+#pragma once
+
+#include "fluid_solver/vector.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace duet::fluid {
+
+/// Body force b = (T - reference) * per_kelvin of the Boussinesq fluid, split by compartment into
+/// its value at the level temperature and the rest.
+class Hydrostatics {
+  public:
+    struct Level {
+        double temperature = 0; ///< K; the mean over the compartment
+        Vec2 centre;            ///< of the compartment's particles, where this pressure vanishes
+    };
+
+    Hydrostatics(double density, double reference, Vec2 per_kelvin)
+        : density_(density), reference_(reference), per_kelvin_(per_kelvin) {}
+
+    std::vector<Level> levels; ///< by compartment
+
+    /// The whole body force, m/s2.
+    Vec2 force(double temperature) const { return (temperature - reference_) * per_kelvin_; }
+    /// What is left of it beside the level's.
+    Vec2 departure(double temperature, std::uint16_t compartment) const {
+        return (temperature - levels[compartment].temperature) * per_kelvin_;
+    }
+    /// rho b_level . (x - centre), Pa.
+    double pressure(Vec2 x, std::uint16_t compartment) const {
+        const Level& level = levels[compartment];
+        return density_ * dot(force(level.temperature), x - level.centre);
+    }
+    double reference() const { return reference_; }
+
+  private:
+    double density_, reference_;
+    Vec2 per_kelvin_;
+};
+
+} // namespace duet::fluid
