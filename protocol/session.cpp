@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <deque>
+#include <fcntl.h>
 #include <stdexcept>
 #include <vector>
 
@@ -128,13 +129,18 @@ std::optional<Event> Session::next(Clock::time_point deadline) {
         // What solvers sent counts before the news of a descriptor (the end of a process).
         if (auto event = state_->next_now())
             return event;
-        for (std::size_t i = sockets; i < items.size(); ++i)
-            if (items[i].revents != 0) {
-                Event event;
-                event.kind = Event::Kind::descriptor;
-                event.descriptor = items[i].fd;
-                return event;
+        for (std::size_t i = sockets; i < items.size(); ++i) {
+            if (items[i].revents == 0)
+                continue;
+            if (fcntl(items[i].fd, F_GETFD) == -1) { // closed: it would be ready for ever
+                unwatch(items[i].fd);
+                continue;
             }
+            Event event;
+            event.kind = Event::Kind::descriptor;
+            event.descriptor = items[i].fd;
+            return event;
+        }
     }
 }
 

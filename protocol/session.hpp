@@ -73,8 +73,9 @@ class Session {
     /// Hello.
     Clock::time_point last_heard(v1::Role role) const;
 
-    /// next() also returns, with Kind::descriptor, when this descriptor is readable (pidfd,
-    /// signalfd); until unwatched, every time.
+    /// next() also returns, with Kind::descriptor, when this descriptor is readable or at its end
+    /// (pidfd, signalfd, pipe): every time, until it is unwatched or closed. The end of a process
+    /// may be seen before its last messages; its disconnected event always comes after them.
     void watch(int descriptor);
     void unwatch(int descriptor);
 

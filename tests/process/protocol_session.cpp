@@ -220,6 +220,14 @@ TEST(Session, WakesForAWatchedDescriptorAndAtItsDeadline) {
     close(descriptor);
 }
 
+TEST(Session, ForgetsADescriptorThatWasClosed) {
+    Stage stage;
+    const int descriptor = eventfd(1, EFD_NONBLOCK);
+    stage.session.watch(descriptor);
+    close(descriptor);
+    EXPECT_FALSE(stage.session.next(Clock::now() + std::chrono::milliseconds(50)));
+}
+
 TEST(Session, HasNobodyToSendToBeforeHello) {
     Stage stage;
     EXPECT_FALSE(stage.session.connected(solid));
