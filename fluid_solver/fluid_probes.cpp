@@ -37,7 +37,7 @@ constexpr Field fields[] = {
 constexpr Integral integrals[] = {
     {"mean_temperature", [](const Ledger& l) { return l.mean_temperature; }},
     {"heat", [](const Ledger& l) { return l.heat; }},
-    {"heat_from_interface", [](const Ledger& l) { return l.heat_from_interface; }},
+    {"heat_received", [](const Ledger& l) { return l.heat_from_interface; }},
     {"heat_from_walls", [](const Ledger& l) { return l.heat_from_walls; }},
     {"kinetic_energy", [](const Ledger& l) { return l.kinetic_energy; }},
     {"max_speed", [](const Ledger& l) { return l.max_speed; }},
