@@ -122,9 +122,8 @@ TEST(SolidInterface, EachFaultIsNamed) {
     EXPECT_NE(refusal({one, rectangle_mesh({4, 2}, 2, 2, 0.5)}).find("touch"), std::string::npos);
     EXPECT_NE(refusal({one, rectangle_mesh({1, 1}, 5, 5, 0.5)}).find("overlap"), std::string::npos);
     EXPECT_NE(refusal({rectangle_mesh({1, 1}, 5, 5, 0.5), one}).find("overlap"), std::string::npos);
-    // A cross: no corner of one lies in the other.
-    EXPECT_NE(refusal({rectangle_mesh({1, 4}, 8, 1, 0.4), rectangle_mesh({4.3, 1.1}, 1, 8, 0.4)}),
-              "");
+    // A cross of single cells: no node of one lies in the other.
+    EXPECT_NE(refusal({rectangle_mesh({1, 4}, 8, 1, 8), rectangle_mesh({4, 1}, 1, 8, 8)}), "");
     // The wall's corner lies inside an edge.
     const std::vector<Point> step{{0, 0}, {10, 0}, {10, 10}, {5, 10}, {5, 5}, {0, 5}};
     EXPECT_NE(refusal({rectangle_mesh({4.2, 3}, 3, 2, 1.5)}, step).find("lies inside an edge"),

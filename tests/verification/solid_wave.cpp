@@ -139,8 +139,8 @@ double speed_after(BodyConfig config, double share, int steps) {
 class StableStep : public testing::TestWithParam<double> {};
 
 TEST_P(StableStep, MechanicalBoundIsAdiabaticAndTight) {
-    // Little conduction: the bound is the mechanical one. With C = 1 an isothermal bound would be
-    // sqrt(2) times as long.
+    // Little conduction: the bound is the mechanical one, and at C = 1 the isothermal one would be
+    // 15 % longer.
     BodyConfig config = strip(0.5, 0.1, 1);
     config.material.conductivity = 1e-4;
     config.stiffness_damping = GetParam();
