@@ -14,6 +14,7 @@ import matplotlib.pyplot as plt
 import numpy
 from matplotlib.collections import EllipseCollection, LineCollection
 from matplotlib.colors import CenteredNorm, Normalize
+from matplotlib.patches import Polygon
 
 from run_data import STYLE, fail, label, open_series, read_case, run_folder
 
@@ -87,7 +88,7 @@ def draw_arrows(axis, frame, spacing):
     if fastest == 0:
         return
     x, y = mean(frame.position)
-    drawn = speed > 0.03 * fastest  # shorter ones would be dots
+    drawn = speed > 0.04 * fastest  # shorter ones would be dots
     axis.quiver(
         x[drawn],
         y[drawn],
@@ -108,14 +109,16 @@ def draw_arrows(axis, frame, spacing):
     axis.set_title(f"longest arrow {fastest:.3g} m/s", loc="right", color="0.4", fontsize=7)
 
 
-def draw_panel(axis, fluid, solid, options, spacing, colour):
+def draw_panel(axis, fluid, solid, options, case, colour):
     """Returns what the colour bar explains."""
+    spacing = particle_spacing(fluid or solid, case)
+    region = case.get("fluid", {}).get("region")
     colour_map, norm = colour
     shown = None
     if fluid is not None:
         values = fluid.field(options.field)
-        # Discs as wide as a lattice cell's diagonal leave no gaps.
-        size = numpy.full(len(fluid.position), 1.45 * spacing)
+        # Discs wider than a lattice cell's diagonal leave no gaps between disordered particles.
+        size = numpy.full(len(fluid.position), 1.75 * spacing)
         discs = EllipseCollection(
             size, size, numpy.zeros_like(size), units="xy", offsets=fluid.position,
             offset_transform=axis.transData, linewidth=0, zorder=1,
@@ -126,6 +129,10 @@ def draw_panel(axis, fluid, solid, options, spacing, colour):
             discs.set(array=values, cmap=colour_map, norm=norm)
             shown = discs
         axis.add_collection(discs)
+        if region:
+            walls = Polygon(region, facecolor="none", edgecolor="0.1", linewidth=0.8, zorder=3)
+            axis.add_patch(walls)
+            discs.set_clip_path(walls)
     if solid is not None:
         values = solid.field(options.field)
         x, y = solid.position.T
@@ -146,12 +153,15 @@ def draw_panel(axis, fluid, solid, options, spacing, colour):
         draw_arrows(axis, fluid, spacing)
 
     points = numpy.concatenate([frame.position for frame in (fluid, solid) if frame is not None])
-    margin = spacing / 2
+    if region:
+        points, margin = numpy.concatenate([points, region]), 0
+    else:
+        margin = spacing / 2
     axis.set_xlim(points[:, 0].min() - margin, points[:, 0].max() + margin)
     axis.set_ylim(points[:, 1].min() - margin, points[:, 1].max() + margin)
     axis.set_aspect("equal")
     axis.grid(False)
-    axis.spines[:].set_visible(True)
+    axis.spines[:].set_visible(not region)
     axis.set_title(f"t = {(fluid or solid).time:.4g} s", loc="left")
     axis.set_xlabel("x [m]")
     return shown
@@ -176,9 +186,8 @@ def draw(frames, options, case):
         rows, columns, figsize=(size * columns + 0.9, size * tall * rows + 0.7), squeeze=False,
         sharey=True, layout="constrained",
     )
-    spacing = particle_spacing(frames[0][0] or frames[0][1], case)
     for axis, (fluid, solid) in zip(axes.flat, frames):
-        shown = draw_panel(axis, fluid, solid, options, spacing, colour)
+        shown = draw_panel(axis, fluid, solid, options, case, colour)
     for axis in axes.flat[len(frames) :]:
         axis.set_visible(False)
     for row in axes:
