@@ -147,16 +147,15 @@ void play(Conductor& conductor, RunResult& result, spdlog::logger& log) {
     } catch (const Interrupted&) {
         result.ended = Ended::interrupted;
         conductor.abort("the user stopped the run");
+        return;
     } catch (const Failure& failure) {
         result.failure = failure.what();
-        log.error("{}", result.failure);
-        conductor.abort(result.failure);
     } catch (const std::exception& error) { // a full disk, say
         result.failure =
             Failure("duet", {conductor.windows(), conductor.time()}, error.what()).what();
-        log.error("{}", result.failure);
-        conductor.abort(result.failure);
     }
+    log.error("{}", result.failure);
+    conductor.abort(result.failure);
 }
 
 } // namespace
@@ -194,21 +193,27 @@ RunResult run_case(const Case& given, const RunOptions& options) {
     progress.say("duet plays " + given.name + " in " + folder.path().string());
 
     result.players.resize(parts.size());
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-        result.players[i].role = parts[i].role;
-        result.players[i].threads =
-            options.threads > 0 ? options.threads : default_threads(given.scene);
-        start(result.players[i], parts[i], session.address(), progress, *log);
+    try {
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            result.players[i].role = parts[i].role;
+            result.players[i].threads =
+                options.threads > 0 ? options.threads : default_threads(given.scene);
+            start(result.players[i], parts[i], session.address(), progress, *log);
+        }
+        Score score;
+        score.configure = configure_for(given, folder, parts, sockets, session);
+        score.connect_timeout = options.connect_timeout;
+        score.signals = signals.descriptor();
+        Conductor conductor(score, session, result.players, recorder, audit, progress, *log);
+        play(conductor, result, *log);
+        result.time = conductor.time();
+        result.windows = conductor.windows();
+    } catch (const std::exception& error) { // a program that the system cannot start
+        result.failure = Failure("duet", {}, error.what()).what();
+        log->error("{}", result.failure);
+        for (Player& player : result.players)
+            player.process.reset(); // ends it
     }
-    Score score;
-    score.configure = configure_for(given, folder, parts, sockets, session);
-    score.connect_timeout = options.connect_timeout;
-    score.signals = signals.descriptor();
-    Conductor conductor(score, session, result.players, recorder, audit, progress, *log);
-    play(conductor, result, *log);
-
-    result.time = conductor.time();
-    result.windows = conductor.windows();
     result.balances = audit.balances();
     result.histories = recorder.histories();
     result.profiles = recorder.profiles();

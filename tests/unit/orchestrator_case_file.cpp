@@ -91,9 +91,9 @@ TEST(CaseFile, EachKindOfFaultHasItsSentence) {
               "case.toml:10:1: fluid.wall must be an array of tables, not a number");
     EXPECT_EQ(with("[output]\ncoupling = 1\n"),
               "case.toml:11:1: output.coupling must be true or false, not a number");
-    EXPECT_EQ(
-        with("[[check]]\nquantity = 'x'\ntolerance = 1\nreference = 'no/such.csv'\n").substr(0, 75),
-        "case.toml:13:1: check[0].reference names a file that does not exist: ");
+    EXPECT_NE(with("[[check]]\nquantity = 'x'\ntolerance = 1\nreference = 'no/such.csv'\n")
+                  .find("case.toml:13:1: check[0].reference names a file that does not exist: /"),
+              std::string::npos);
     EXPECT_NE(with("[[fluid.wall]]\nname = 'w'\nalong = [[0, 0]]\n")
                   .find("fluid.wall[0].along needs at least 2 entries, not 1"),
               std::string::npos);
