@@ -159,7 +159,9 @@ expect(const Subject& subject, const v1::ToPeer& message, bool right_kind, const
 
 /// Both sides work the times of windows out of the lease; a compiler that contracts products and
 /// sums, or another language, may round the last bits otherwise.
-bool same_time(double a, double b) { return std::abs(a - b) <= 1e-12 * std::abs(b); }
+bool same_time(double a, double b) {
+    return std::abs(a - b) <= 1e-12 * std::abs(b);
+}
 
 void take_motion(const Subject& subject,
                  std::size_t nodes,
