@@ -20,6 +20,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <map>
 #include <stdexcept>
 #include <sys/wait.h>
 #include <thread>
@@ -154,16 +155,13 @@ class Lead {
             next();
     }
 
-    /// A round of windows; the next lease is granted when half of the last one is reported.
+    /// A round of windows; leases go out before the last one is used up.
     void play() {
         const std::uint64_t end = leased_ + round_size;
-        lease();
-        for (std::uint64_t reports = 0; reports < 2 * round_size; ++reports) {
-            const std::uint64_t ahead = 2 * leased_ - reported_;
-            if (ahead <= windows_a_lease && leased_ < end)
+        while (closed() < end) {
+            while (leased_ < end && leased_ - closed() <= windows_a_lease)
                 lease();
-            next();
-            ++reported_;
+            ++reported_.at(next());
         }
     }
 
@@ -190,7 +188,12 @@ class Lead {
         leased_ += windows_a_lease;
     }
 
-    void next() {
+    /// Windows that both have reported.
+    std::uint64_t closed() const {
+        return std::min(reported_.at(v1::ROLE_SOLID), reported_.at(v1::ROLE_FLUID));
+    }
+
+    v1::Role next() {
         for (;;) {
             const auto event = session_.next(Clock::now() + std::chrono::seconds(10));
             if (!event || event->kind != Event::Kind::message || event->message.has_failed())
@@ -198,13 +201,13 @@ class Lead {
                                          + (event ? event->text + event->message.failed().text()
                                                   : std::string("silence.")));
             if (!event->message.has_heartbeat())
-                return;
+                return event->role;
         }
     }
 
     Session& session_;
     std::uint64_t leased_ = 0;
-    std::uint64_t reported_ = 0;
+    std::map<v1::Role, std::uint64_t> reported_{{v1::ROLE_SOLID, 0}, {v1::ROLE_FLUID, 0}};
 };
 
 double median(std::vector<double>& values) {

@@ -72,17 +72,19 @@ void ControlLink::flush_if_due() {
 }
 
 void ControlLink::flush() {
+    if (posted_.empty())
+        return;
     for (std::size_t i = 0; i < posted_.size(); ++i)
         (void)near_.send(posted_[i],
                          i + 1 < posted_.size() ? zmq::send_flags::sndmore : zmq::send_flags::none);
     posted_.clear();
     flushed_ = Clock::now();
+    sent_ = true;
 }
 
 std::optional<v1::ToSolver> ControlLink::receive(Clock::time_point deadline) {
+    flush(); // the orchestrator may wait for just these
     heed();
-    if (inbox_.empty() && !posted_.empty())
-        flush(); // the orchestrator may wait for just these
     while (inbox_.empty()) {
         if (Clock::now() >= deadline)
             return std::nullopt;
@@ -96,6 +98,7 @@ std::optional<v1::ToSolver> ControlLink::receive(Clock::time_point deadline) {
 }
 
 void ControlLink::heed() {
+    sent_ = false;
     zmq::message_t frame;
     while (near_.recv(frame, zmq::recv_flags::dontwait)) {
         if (frame.more()) {

@@ -51,8 +51,9 @@ class ControlLink {
 
     /// Hands over a message that may wait a little for others: with windows shorter than
     /// post_patience, each wake-up of the thread would cost more than the exchange itself. It goes
-    /// out with the next send(), with a later post(), or by flush_if_due().
+    /// out with the next send() or flush(), with a later post(), or by flush_if_due().
     void post(const v1::ToOrchestrator& message);
+    void flush();
 
     /// For a wait on other sockets: wake up at flush_due() and call flush_if_due().
     Clock::time_point flush_due() const;
@@ -61,18 +62,22 @@ class ControlLink {
     /// The next message in order; none when `deadline` passes. Throws as heed().
     std::optional<v1::ToSolver> receive(Clock::time_point deadline);
 
-    /// For a wait on other sockets: poll this one too, and call heed() when it is readable. It
-    /// keeps what came for receive(); throws Aborted on Abort and when the orchestrator is gone,
-    /// Error(PEER) on bytes that are no message.
+    /// For a wait on other sockets: poll the descriptor of this one too, and call heed() when it is
+    /// readable. It keeps what came for receive(); throws Aborted on Abort and when the
+    /// orchestrator is gone, Error(PEER) on bytes that are no message. A send may swallow the
+    /// descriptor's signal: heed_after_send() before such a wait.
     zmq::socket_ref socket() { return near_; }
     void heed();
+    void heed_after_send() {
+        if (sent_)
+            heed();
+    }
 
     Pulse& pulse() { return pulse_; }
 
   private:
     static constexpr auto post_patience = std::chrono::milliseconds(5);
 
-    void flush();
     void run();
     void forward_to_orchestrator();
     void forward_to_solver();
@@ -83,6 +88,7 @@ class ControlLink {
     std::deque<v1::ToSolver> inbox_;
     std::vector<zmq::message_t> posted_;
     Clock::time_point flushed_{};
+    bool sent_ = false;  // since the last heed()
     zmq::socket_t near_; // inproc; the solver's thread uses this end, the link's thread the rest
     zmq::socket_t far_;
     zmq::socket_t dealer_;

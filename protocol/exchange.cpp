@@ -83,13 +83,8 @@ void Exchange::wait_until(Attempt attempt) {
     const auto deadline =
         start + std::chrono::duration_cast<ControlLink::Clock::duration>(timeout_);
     const char* const phase = control_.pulse().phase.exchange("waiting for the other solver");
+    control_.heed_after_send();
     for (;;) {
-        control_.flush_if_due();
-        control_.heed();
-        monitor_.update();
-        // What the peer sent before it went is in the pipe before the news of its going.
-        if (attempt())
-            break;
         if (lost())
             throw Error(v1::Failed::PEER,
                         "The " + peer_ + " has closed its connection: its process has ended.");
@@ -99,6 +94,11 @@ void Exchange::wait_until(Attempt attempt) {
                             + " s; it hangs, or its windows take longer than the timeout.");
         sleep_until_news(std::min(deadline, control_.flush_due()));
         if (attempt())
+            break;
+        control_.flush_if_due();
+        control_.heed();
+        monitor_.update();
+        if (attempt()) // what the peer sent before it went is in the pipe before the news of that
             break;
     }
     control_.pulse().phase = phase;
@@ -117,7 +117,7 @@ void Exchange::sleep_until_news(ControlLink::Clock::time_point deadline) {
 
 bool Exchange::lost() const {
     if (peer_descriptor_ != -1)
-        return !monitor_.open(peer_descriptor_);
+        return monitor_.closed(peer_descriptor_);
     return monitor_.ever_open() && !monitor_.any_open();
 }
 

@@ -172,6 +172,7 @@ class Participant {
                   last && lease.sample(),
                   last && lease.snapshot()});
         }
+        control_.flush(); // the orchestrator may renew the lease on these reports
     }
 
     /// One window, in the order of the schedule.
@@ -272,9 +273,9 @@ class Participant {
 
     void fill(v1::Timing& timing) const {
         timing.set_wall(since(start_));
-        timing.set_cpu(cpu_time());
         timing.set_waiting_for_peer(exchange_ ? exchange_->waited() : 0);
         timing.set_waiting_for_lease(waiting_for_lease_);
+        timing.set_cpu(cpu_time());
         timing.set_peak_memory(peak_memory());
     }
 

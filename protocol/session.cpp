@@ -354,7 +354,7 @@ std::optional<Event> Session::State::next_exchange() {
 std::optional<Event> Session::State::next_loss() {
     for (const v1::Role role : {v1::ROLE_SOLID, v1::ROLE_FLUID}) {
         Seat& seat = this->seat(role);
-        if (!seat.present() || monitor.open(seat.descriptor))
+        if (!seat.present() || !monitor.closed(seat.descriptor))
             continue;
         seat.phase = Phase::ended;
         Event event;

@@ -49,10 +49,13 @@ void ConnectionMonitor::update() {
         std::memcpy(&value, event.data<char>() + sizeof kind, sizeof value);
         if (kind == ZMQ_EVENT_HANDSHAKE_SUCCEEDED)
             greeted_ = true;
-        else if (kind == ZMQ_EVENT_DISCONNECTED)
+        else if (kind == ZMQ_EVENT_DISCONNECTED) {
             open_.erase(value);
-        else
+            closed_.insert(value);
+        } else {
             open_.insert(value);
+            closed_.erase(value); // the descriptor of another connection by now
+        }
     }
 }
 

@@ -28,8 +28,8 @@ class ConnectionMonitor {
     zmq::socket_ref socket() { return news_; }
     void update();
 
-    /// Whether the connection with this descriptor (see connection_of) is up.
-    bool open(int descriptor) const { return open_.contains(descriptor); }
+    /// Whether the connection with this descriptor (see connection_of) has gone down again.
+    bool closed(int descriptor) const { return closed_.contains(descriptor); }
     bool any_open() const { return !open_.empty(); }
 
     /// Whether some connection got past its greeting.
@@ -39,6 +39,7 @@ class ConnectionMonitor {
     zmq::socket_t& watched_;
     zmq::socket_t news_;
     std::set<int> open_;
+    std::set<int> closed_;
     bool greeted_ = false;
 };
 
