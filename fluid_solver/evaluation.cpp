@@ -4,6 +4,7 @@
 #include "fluid_solver/shifting.hpp"
 
 #include <atomic>
+#include <cstring>
 
 namespace duet::fluid {
 
@@ -65,6 +66,30 @@ void laplacian_weights(const Symmetric& B,
     }
 }
 
+/// Lays the weights of the neighbours out pair by pair, four pairs at a time (the room for a
+/// particle's pairs is a multiple of four).
+void interleave(const Weights& w, const Neighbours& near, PairWeight* pairs) {
+    using Four = float __attribute__((vector_size(16)));
+    const auto take = [](const auto& from, std::size_t k) {
+        Four values;
+        std::memcpy(&values, &from[k], sizeof values);
+        return values;
+    };
+    for (std::size_t k = 0; k < static_cast<std::size_t>(near.count); k += 4) {
+        const Four x = take(w.x_float, k), y = take(w.y_float, k), F = take(w.F_float, k);
+        const Four index = take(near.index, k);
+        const Four xy01 = __builtin_shufflevector(x, y, 0, 4, 1, 5);
+        const Four xy23 = __builtin_shufflevector(x, y, 2, 6, 3, 7);
+        const Four Fi01 = __builtin_shufflevector(F, index, 0, 4, 1, 5);
+        const Four Fi23 = __builtin_shufflevector(F, index, 2, 6, 3, 7);
+        const Four rows[4] = {__builtin_shufflevector(xy01, Fi01, 0, 1, 4, 5),
+                              __builtin_shufflevector(xy01, Fi01, 2, 3, 6, 7),
+                              __builtin_shufflevector(xy23, Fi23, 0, 1, 4, 5),
+                              __builtin_shufflevector(xy23, Fi23, 2, 3, 6, 7)};
+        std::memcpy(static_cast<void*>(pairs + k), rows, sizeof rows);
+    }
+}
+
 void drop_hidden(const std::vector<Contact>& contacts, Neighbours& near) {
     for (int i = near.count - 1; i >= 0; --i) {
         const auto k = static_cast<std::size_t>(i);
@@ -115,13 +140,7 @@ bool Evaluation::gather(std::size_t a, const Particles& particles, const Scene& 
         return false;
     }
     weigh(kernel_, scene.input.volume, s.near, s.weights);
-    PairWeight* pair = &pairs_[a * stride_];
-    for (std::size_t k = 0; k < count[a]; ++k) {
-        pair[k] = {static_cast<float>(s.weights.x[k]),
-                   static_cast<float>(s.weights.y[k]),
-                   static_cast<float>(s.weights.F[k]),
-                   s.near.index[k]};
-    }
+    interleave(s.weights, s.near, &pairs_[a * stride_]);
     s.moments = moments(s.near, s.weights);
     return true;
 }

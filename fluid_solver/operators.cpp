@@ -9,9 +9,12 @@ void weigh(const Kernel& kernel, double volume, const Neighbours& neighbours, We
     for (int i = 0; i < neighbours.count; ++i) {
         const auto k = static_cast<std::size_t>(i);
         const double F = volume * kernel.slope_over_r(std::sqrt(neighbours.r2[k]));
-        weights.F[k] = static_cast<float>(F);
-        weights.x[k] = static_cast<float>(F * neighbours.x[k]);
-        weights.y[k] = static_cast<float>(F * neighbours.y[k]);
+        weights.F_float[k] = static_cast<float>(F);
+        weights.x_float[k] = static_cast<float>(F * neighbours.x[k]);
+        weights.y_float[k] = static_cast<float>(F * neighbours.y[k]);
+        weights.F[k] = weights.F_float[k];
+        weights.x[k] = weights.x_float[k];
+        weights.y[k] = weights.y_float[k];
     }
 }
 

@@ -16,7 +16,8 @@ namespace duet::fluid {
 /// how the inner steps store them; every sum uses the rounded numbers, so that the gradient stays
 /// exact for linear fields.
 struct Weights {
-    alignas(32) std::array<double, most_neighbours> x, y, F; ///< V F x, V F y, V F
+    alignas(32) std::array<double, most_neighbours> x, y, F;                  ///< V F x, V F y, V F
+    alignas(32) std::array<float, most_neighbours> x_float, y_float, F_float; ///< the same numbers
 };
 
 /// Sums over the fluid neighbours, x = x_ab.
