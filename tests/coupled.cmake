@@ -1,0 +1,15 @@
+# The cases that people run, held against their references by the program that people use, at a spacing that is
+# affordable here. DUET_CASE(NAME CASE [--set ...]).
+function(duet_case name case)
+    add_test(NAME verification.case.${name}
+        COMMAND duet verify ${PROJECT_SOURCE_DIR}/cases/${case} ${ARGN}
+            --output ${PROJECT_BINARY_DIR}/cases/${name} --overwrite)
+    set_tests_properties(verification.case.${name} PROPERTIES LABELS verification TIMEOUT 600 PROCESSORS 2)
+endfunction()
+
+if(TARGET duet AND TARGET duet-solid AND TARGET duet-fluid)
+    duet_case(hot_plate hot_plate --set fluid.spacing=0.125 --set solid.body[0].element_size=0.0625)
+    duet_case(two_layers two_layers)
+    duet_case(two_layers_conductive two_layers/conductive.toml)
+    duet_case(two_layers_equal two_layers/equal.toml)
+endif()
