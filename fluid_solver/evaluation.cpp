@@ -232,9 +232,11 @@ void Evaluation::take_samples(std::size_t a,
     for (const Contact& contact : contacts) {
         if (contact.distance < sample_depth_ && contact.on_face()) {
             const WallPoint point = boundary.at(*contact.face, contact.foot);
+            const std::uint32_t cell = boundary.cell_at(*point.segment, point.along);
             out.push_back({static_cast<std::uint32_t>(a),
-                           boundary.cell_at(*point.segment, point.along),
+                           cell,
                            contact.distance,
+                           (point.along - boundary.cells()[cell].centre) * point.segment->length,
                            point.value,
                            dot(point.acceleration, contact.face->normal)});
         }

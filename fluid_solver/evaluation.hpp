@@ -34,6 +34,7 @@ struct WallSample {
     std::uint32_t particle;
     std::uint32_t cell;
     double distance;
+    double along;        ///< of the foot point beyond the cell's middle, m
     Lanes wall;          ///< u, v, 0, T of the wall at the foot point
     double acceleration; ///< of the wall along its normal
 };

@@ -33,10 +33,12 @@ class Hydrostatics {
     }
     /// rho b_level . (x - centre), Pa.
     double pressure(Vec2 x, std::uint16_t compartment) const {
-        const Level& level = levels[compartment];
-        return density_ * dot(force(level.temperature), x - level.centre);
+        return dot(gradient(compartment), x - levels[compartment].centre);
     }
-    double reference() const { return reference_; }
+    /// rho b_level, Pa/m.
+    Vec2 gradient(std::uint16_t compartment) const {
+        return density_ * force(levels[compartment].temperature);
+    }
 
   private:
     double density_, reference_;

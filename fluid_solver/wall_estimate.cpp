@@ -4,13 +4,14 @@
 
 namespace duet::fluid {
 
-void WallEstimate::Sums::add(double share, const Sums& other) {
+void WallEstimate::Sums::add(double share, double ahead, const Sums& other) {
     if (other.w > 0) {
         compartment = other.compartment;
     }
     w += share * other.w;
     wdd += share * other.wdd;
-    wp += share * other.wp;
+    wp += share * (other.wp + ahead * other.wp_along);
+    wp_along += share * other.wp_along;
     wd += share * other.wd;
 }
 
@@ -20,22 +21,25 @@ WallEstimate::Sums
 WallEstimate::stretch(const Boundary& boundary, std::uint32_t cell, double half_width) const {
     const auto& cells = boundary.cells();
     Sums total;
-    total.add(1, sums_[cell]);
-    const auto walk = [&](std::uint32_t WallCell::*next) {
+    total.add(1, 0, sums_[cell]);
+    const auto walk = [&](std::uint32_t WallCell::*next, double direction) {
         double start = 0.5 * cells[cell].length;
         for (std::uint32_t c = cells[cell].*next; c != none && c != cell && start < half_width;
              c = cells[c].*next) {
-            total.add(std::min(1.0, (half_width - start) / cells[c].length), sums_[c]);
-            start += cells[c].length;
+            const double length = cells[c].length;
+            const double ahead = direction * (start + 0.5 * length);
+            total.add(std::min(1.0, (half_width - start) / length), ahead, sums_[c]);
+            start += length;
         }
     };
-    walk(&WallCell::before);
-    walk(&WallCell::after);
+    walk(&WallCell::before, 1);
+    walk(&WallCell::after, -1);
     return total;
 }
 
 /// With w = 1 - d/(1.5 dx): flux k sum w d (T_w - T_a) / sum w d^2, the viscous traction likewise
-/// from the velocity, the pressure extrapolated with its known slope rho (b - a_wall).n.
+/// from the velocity; the pressure is extrapolated with its known slope rho (b - a_wall).n across
+/// the wall and its gradient along the wall.
 void WallEstimate::run(const Boundary& boundary,
                        const Evaluation& evaluation,
                        const Particles& particles,
@@ -47,15 +51,19 @@ void WallEstimate::run(const Boundary& boundary,
             const Fields& f = particles.fields[sample.particle];
             const double d = sample.distance, w = 1 - d / evaluation.sample_depth();
             const Vec2 n = boundary.cells()[sample.cell].normal;
-            const std::uint16_t compartment = particles.compartment[sample.particle];
-            const double p =
-                f.p + hydrostatics.pressure(particles.position(sample.particle), compartment);
-            const double slope = dot(hydrostatics.force(f.T), n) - sample.acceleration;
+            const std::size_t a = sample.particle;
+            const std::uint16_t compartment = particles.compartment[a];
+            const double p = f.p + hydrostatics.pressure(particles.position(a), compartment);
+            const double across = dot(hydrostatics.force(f.T), n) - sample.acceleration;
+            const Vec2 gradient = Vec2{evaluation.slope_x[a].p, evaluation.slope_y[a].p}
+                                  + hydrostatics.gradient(compartment);
+            const double along = dot(gradient, {n.y, -n.x}); // in the direction of travel
             Sums& s = sums_[sample.cell];
             s.w += w;
             s.wdd += w * d * d;
             s.wd += (w * d) * (sample.wall - load(f));
-            s.wp += w * (p + material.density * slope * d);
+            s.wp += w * (p + material.density * across * d - along * sample.along);
+            s.wp_along += w * along;
             s.compartment = compartment;
         }
     }

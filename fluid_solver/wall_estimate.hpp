@@ -43,10 +43,13 @@ class WallEstimate {
   private:
     /// Sums over the samples of one cell, or of a stretch of cells.
     struct Sums {
-        double w = 0, wdd = 0, wp = 0; ///< sum w, w d^2, w p_wall
-        Lanes wd{};                    ///< sum w d (f_wall - f_a)
+        double w = 0, wdd = 0; ///< sum w, w d^2
+        Lanes wd{};            ///< sum w d (f_wall - f_a)
+        double wp = 0;         ///< sum w p_wall, each p_wall taken to the middle of the cell
+        double wp_along = 0;   ///< sum w dp/ds along the wall
         std::uint16_t compartment = 0;
-        void add(double share, const Sums& other);
+        /// Adds a share of another cell's sums; this one's middle lies `ahead` of the other's.
+        void add(double share, double ahead, const Sums& other);
     };
     Sums stretch(const Boundary& boundary, std::uint32_t cell, double half_width) const;
 
