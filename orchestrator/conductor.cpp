@@ -18,8 +18,13 @@ using std::chrono::duration;
 using std::chrono::milliseconds;
 
 constexpr auto tick = milliseconds(100);
-constexpr double lease_seconds = 0.25; // s of wall time that a lease should last
-constexpr std::uint32_t longest_lease = 16;
+constexpr std::uint32_t lease_windows = 4;
+constexpr std::size_t leases_out = 2;
+
+/// The smaller of two steps, of which 0 means no limit.
+double smaller_step(double a, double b) {
+    return a == 0 ? b : b == 0 ? a : std::min(a, b);
+}
 
 Conductor::Clock::duration seconds(double s) {
     return std::chrono::duration_cast<Conductor::Clock::duration>(duration<double>(s));
@@ -83,19 +88,18 @@ void Conductor::gather() {
         samples.insert(samples.end(), player.model.sample().begin(), player.model.sample().end());
     if (!samples.empty())
         recorder_.record(0, samples);
-    last_closed_ = Clock::now();
 }
 
-/// Leases go out before the last one is used up, so that nobody waits for the conductor; and no
-/// farther ahead than half a second, so that the run can stop, and the windows follow the stable
-/// step.
+/// Two leases are out at any time, so that nobody waits for the conductor when one is used up. The
+/// length of a lease's windows follows from what was reported at the end of the last but one before
+/// it, never from how fast the solvers happen to run: a run has the same windows every time.
 void Conductor::lend_time() {
-    while (!stopping_ && !calendar_.done() && lent_ - closed_ < lease_size() + 1) {
+    while (!stopping_ && !calendar_.done() && lease_ends_.size() < leases_out) {
         v1::ToSolver message;
-        *message.mutable_lease() = calendar_.next(stable_step(), lease_size());
+        *message.mutable_lease() = calendar_.next(stable_step_, lease_windows);
         for (const Player& player : players_)
             session_.send(player.role, message); // one that is gone is noticed by its event
-        lent_ += message.lease().count();
+        lease_ends_.push_back(message.lease().first() + message.lease().count());
     }
 }
 
@@ -121,14 +125,15 @@ void Conductor::close_window() {
         recorder_.record(time_, samples);
         log_.info("t = {} s, window {}: recorded", time_, closed_);
     }
+    ++closed_;
+    if (closed_ == lease_ends_.front()) {
+        lease_ends_.pop_front();
+        stable_step_ = 0;
+        for (const Player& player : players_)
+            stable_step_ = smaller_step(stable_step_, player.reports.front().stable_step());
+    }
     for (Player& player : players_)
         player.reports.pop_front();
-
-    ++closed_;
-    const Clock::time_point now = Clock::now();
-    const double taken = duration<double>(now - last_closed_).count();
-    pace_ = closed_ == 1 ? taken : 0.8 * pace_ + 0.2 * taken;
-    last_closed_ = now;
     progress_.reached(time_);
 }
 
@@ -163,22 +168,7 @@ void Conductor::dismiss() {
 }
 
 bool Conductor::played_out() const {
-    return (calendar_.done() || stopping_) && closed_ == lent_;
-}
-
-double Conductor::stable_step() const {
-    double least = 0;
-    for (const Player& player : players_)
-        if (player.stable_step > 0 && (least == 0 || player.stable_step < least))
-            least = player.stable_step;
-    return least;
-}
-
-std::uint32_t Conductor::lease_size() const {
-    if (closed_ == 0)
-        return 1; // the pace is not known yet
-    const double windows = lease_seconds / std::max(pace_, 1e-6);
-    return static_cast<std::uint32_t>(std::clamp(windows, 1.0, static_cast<double>(longest_lease)));
+    return (calendar_.done() || stopping_) && lease_ends_.empty();
 }
 
 // -------------------------------------------------------------------------------------------
@@ -228,21 +218,20 @@ void Conductor::attend_message(Player& player, const v1::ToOrchestrator& message
         player.ready = true;
         player.model = message.ready();
         player.ledger = player.model.ledger();
-        player.stable_step = player.model.stable_step();
+        stable_step_ = smaller_step(stable_step_, player.model.stable_step());
         for (const std::string& line : player.model.model())
             log_.info("{} models: {}", name_of(player), line);
         log_.info("{} is ready: {} unknowns, {} interface nodes, stable step {} s",
                   name_of(player),
                   player.model.unknowns(),
                   player.model.nodes(),
-                  player.stable_step);
+                  player.model.stable_step());
         return;
     case v1::ToOrchestrator::kReport: {
         const v1::Report& report = message.report();
         player.reports.push_back(report);
         player.ledger = report.ledger();
         player.timing = report.timing();
-        player.stable_step = report.stable_step();
         player.steps += report.steps();
         player.windows = report.window() + 1;
         player.time = report.time();

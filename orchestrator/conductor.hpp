@@ -14,6 +14,7 @@
 #include <spdlog/logger.h>
 
 #include <chrono>
+#include <deque>
 #include <vector>
 
 namespace duet::orchestrator {
@@ -68,8 +69,6 @@ class Conductor {
     Player* player_of(v1::Role role);
     bool all(bool (*condition)(const Player&)) const;
     bool played_out() const;
-    double stable_step() const;
-    std::uint32_t lease_size() const;
 
     Score score_;
     protocol::Session& session_;
@@ -80,12 +79,10 @@ class Conductor {
     spdlog::logger& log_;
     Calendar calendar_;
 
-    Clock::time_point begun_ = Clock::now();
-    Clock::time_point last_closed_{};
-    double pace_ = 0;          // s of wall time a window, smoothed
-    std::uint64_t lent_ = 0;   // windows
-    std::uint64_t closed_ = 0; // windows that all have reported
-    double time_ = 0;          // s, at the end of the last closed one
+    std::deque<std::uint64_t> lease_ends_; // one past the last window of each lease that is out
+    double stable_step_ = 0;               // s, for the next lease; 0: no limit
+    std::uint64_t closed_ = 0;             // windows that all have reported
+    double time_ = 0;                      // s, at the end of the last closed one
     bool gathering_ = true;
     bool stopping_ = false;
 };

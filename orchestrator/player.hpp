@@ -24,7 +24,6 @@ struct Player {
     std::deque<v1::Report> reports; ///< of windows that the other has not reported yet
     v1::Ledger ledger;              ///< the newest
     v1::Timing timing;              ///< the newest
-    double stable_step = 0;         ///< s, the newest; 0: no limit
     std::uint64_t steps = 0;
     std::uint64_t windows = 0; ///< reported
     double time = 0;           ///< s, at the end of the last one

@@ -45,8 +45,8 @@ struct RunResult {
 int exit_status(const RunResult& result);
 
 /// Plays the case, showing progress on the terminal, and leaves the run folder complete, whatever
-/// happens. Throws std::runtime_error only for what is wrong before there is one: a missing program,
-/// a run folder in use.
+/// happens. Throws std::runtime_error only for what is wrong before there is one: a missing
+/// program, a run folder in use.
 RunResult run_case(const Case& given, const RunOptions& options);
 
 /// Threads for each solver: all cores, since in serial schedules the two take turns; half of them

@@ -55,6 +55,24 @@ double error_of(const Pairs& pairs, v1::Check::Norm norm) {
     }
 }
 
+/// What a check holds the run against: a number, or a column of a file.
+class Reference {
+  public:
+    explicit Reference(const v1::Check& check) : check_(check) {
+        if (!check.has_value())
+            table_.emplace(check.reference());
+    }
+    double at(double along) const {
+        const double unscaled =
+            table_ ? table_->interpolate(check_.column(), check_.along(), along) : check_.value();
+        return check_.scale() * unscaled;
+    }
+
+  private:
+    const v1::Check& check_;
+    std::optional<ReferenceTable> table_;
+};
+
 class Judge {
   public:
     Judge(const Case& given, const RunResult& result)
@@ -66,24 +84,17 @@ class Judge {
     Pairs figure(const v1::Check& check) const;
     Pairs at_time(const v1::Check& check, const v1::Probe& probe, double time) const;
     Pairs over_times(const v1::Check& check, const v1::Probe& probe) const;
-    double reference(const v1::Check& check, double along) const;
 
     const v1::Scene& scene_;
     const RunResult& result_;
     std::map<std::string, double> figures_;
 };
 
-double Judge::reference(const v1::Check& check, double along) const {
-    if (check.has_value())
-        return check.value();
-    return ReferenceTable(check.reference()).interpolate(check.column(), check.along(), along);
-}
-
 Pairs Judge::figure(const v1::Check& check) const {
     const auto found = figures_.find(check.quantity());
     if (found == figures_.end())
         throw std::runtime_error("the run has no audit figure '" + check.quantity() + "'");
-    return {{found->second / check.scale()}, {reference(check, scene_.time().end())}};
+    return {{found->second}, {Reference(check).at(scene_.time().end())}};
 }
 
 /// The entry of a series at a time that the calendar has made a mark, to rounding.
@@ -104,17 +115,18 @@ Pairs Judge::at_time(const v1::Check& check, const v1::Probe& probe, double time
         const History& history = found->second;
         const double& found_time = entry_at(history.time, time, slack, [](double t) { return t; });
         const auto i = static_cast<std::size_t>(&found_time - history.time.data());
-        return {{history.value[i] / check.scale()}, {reference(check, time)}};
+        return {{history.value[i]}, {Reference(check).at(time)}};
     }
     const auto found = result_.profiles.find(probe.name());
     if (found == result_.profiles.end())
         throw std::runtime_error("the solver sent no values");
     const Profile& profile =
         entry_at(found->second, time, slack, [](const Profile& one) { return one.time; });
+    const Reference reference(check);
     Pairs pairs;
     for (std::size_t j = 0; j < profile.value.size(); ++j) {
-        pairs.value.push_back(profile.value[j] / check.scale());
-        pairs.reference.push_back(reference(check, profile.position[j]));
+        pairs.value.push_back(profile.value[j]);
+        pairs.reference.push_back(reference.at(profile.position[j]));
     }
     return pairs;
 }

@@ -80,7 +80,7 @@ class GarbageData(WrongData):
     def send(self, message):
         if message.load.window == 5:
             stamp()
-            self._data._socket.send(b"\xff\xfe garbage")
+            self._data._pair.send(b"\xff\xfe garbage")
         else:
             self._data.send(message)
 

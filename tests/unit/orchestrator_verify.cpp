@@ -82,11 +82,10 @@ TEST_F(Verify, RelativeAtTheEndIfNoTimeIsNamed) {
     EXPECT_FALSE(all_pass({verdict}));
 }
 
-TEST_F(Verify, ScaleDividesTheQuantity) {
-    check("scalar", v1::Check::RELATIVE, 0.01).set_value(9.5);
-    given_.scene.mutable_check(0)->set_scale(2);
-    EXPECT_EQ(only().value, 9.5);
-    EXPECT_EQ(only().error, 0);
+TEST_F(Verify, ScaleMultipliesTheReference) {
+    against(check("scalar", v1::Check::RELATIVE, 0.1), "ramp").set_scale(0.5);
+    EXPECT_EQ(only().reference, 10);
+    EXPECT_EQ(only().error, 0.9);
 }
 
 TEST_F(Verify, OverTime) {
