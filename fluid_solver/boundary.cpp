@@ -133,9 +133,9 @@ void Boundary::add_chain(const Chain& chain) {
 void Boundary::add_face(std::uint32_t first, std::uint32_t segments, bool heated) {
     Face face;
     face.a = segments_[first].a;
-    const Vec2 end = segments_[first + segments - 1].b;
-    face.length = norm(end - face.a);
-    face.tangent = (1 / face.length) * (end - face.a);
+    face.b = segments_[first + segments - 1].b;
+    face.length = norm(face.b - face.a);
+    face.tangent = (1 / face.length) * (face.b - face.a);
     face.normal = left(face.tangent);
     face.first = first;
     face.segments = segments;
@@ -279,8 +279,7 @@ void Boundary::register_faces() {
     const double reach = support_ + grid_.cell() * std::sqrt(0.5) * (1 + 1e-9);
     const auto for_cells = [&](const auto& visit) {
         for (std::uint32_t f = 0; f < faces_.size(); ++f) {
-            const Vec2 a = faces_[f].a;
-            const Vec2 b = a + faces_[f].length * faces_[f].tangent;
+            const Vec2 a = faces_[f].a, b = faces_[f].b;
             const int left_column = grid_.column(std::min(a.x, b.x) - reach);
             const int right_column = grid_.column(std::max(a.x, b.x) + reach);
             const int low_row = grid_.row(std::min(a.y, b.y) - reach);
@@ -382,9 +381,9 @@ Boundary::Nearest Boundary::nearest(Vec2 x) const {
 
 bool Boundary::contains(Vec2 x) const {
     bool inside = false;
-    for (const Segment& s : segments_) {
-        if ((s.a.y > x.y) != (s.b.y > x.y)
-            && x.x < s.a.x + (x.y - s.a.y) / (s.b.y - s.a.y) * (s.b.x - s.a.x)) {
+    for (const Face& face : faces_) {
+        const Vec2 a = face.a, b = face.b;
+        if ((a.y > x.y) != (b.y > x.y) && x.x < a.x + (x.y - a.y) / (b.y - a.y) * (b.x - a.x)) {
             inside = !inside;
         }
     }
@@ -393,8 +392,8 @@ bool Boundary::contains(Vec2 x) const {
 
 double Boundary::distance(Vec2 x) const {
     double least = std::numeric_limits<double>::infinity();
-    for (const Segment& s : segments_) {
-        least = std::min(least, distance_to_segment(x, s.a, s.b));
+    for (const Face& face : faces_) {
+        least = std::min(least, distance_to_segment(x, face.a, face.b));
     }
     return least;
 }

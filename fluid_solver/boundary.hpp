@@ -30,7 +30,7 @@ struct Segment {
 
 /// A maximal run of segments on one line with one thermal condition.
 struct Face {
-    Vec2 a;       ///< where it starts
+    Vec2 a, b;    ///< from a to b
     Vec2 tangent; ///< direction of travel
     Vec2 normal;  ///< from the fluid into the wall
     double length = 0;
@@ -99,9 +99,9 @@ class Boundary {
     };
     Nearest nearest(Vec2 x) const;
 
-    /// Whether x lies in the fluid, by the parity of crossings. O(segments).
+    /// Whether x lies in the fluid, by the parity of crossings. O(faces).
     bool contains(Vec2 x) const;
-    /// Distance of x from the boundary. O(segments).
+    /// Distance of x from the boundary. O(faces).
     double distance(Vec2 x) const;
     double area() const;
 
