@@ -99,7 +99,7 @@ def spoil_control_plane():
     right = library._Participant._send_report
 
     def send_report(self, report):
-        if report.window == 5:
+        if self._window.index == 5:
             stamp()
             self._control.socket.send(b"\xff\xfe garbage")
         right(self, report)

@@ -78,6 +78,10 @@ struct Blow {
     std::string what;
 };
 
+std::ostream& operator<<(std::ostream& stream, const Blow& blow) {
+    return stream << "signal " << blow.signal << " to the " << blow.who;
+}
+
 class RealSolver : public ::testing::TestWithParam<Blow> {};
 
 TEST_P(RealSolver, StruckInMidRun) {
@@ -107,7 +111,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Blow{"solid", SIGSTOP, silence + promised, "no sign of life for 3 s"},
                       Blow{"fluid", SIGSTOP, silence + promised, "no sign of life for 3 s"}));
 
-// ---------------------------------------------------------------- solvers that misbehave by
+// ------------------------------------------------------------- solvers that misbehave by
 // themselves
 
 struct Misdeed {
@@ -117,6 +121,10 @@ struct Misdeed {
     std::vector<std::string> parts; ///< of the run's last line
     std::vector<std::string> more = {};
 };
+
+std::ostream& operator<<(std::ostream& stream, const Misdeed& misdeed) {
+    return stream << misdeed.who << " " << misdeed.how;
+}
 
 class Misbehaving : public ::testing::TestWithParam<Misdeed> {};
 
@@ -139,25 +147,23 @@ TEST_P(Misbehaving, EndsTheRun) {
     expect_failed(run, std::stod(stamp), misdeed.allowed, out, misdeed.parts);
 }
 
+// What a solver says itself names the very window; of one that is struck dumb the last report may
+// be lost, and with it the count.
 const std::string in_window_5 = "in window 5 (t = 0.0";
 
 INSTANTIATE_TEST_SUITE_P(
     Trouble,
     Misbehaving,
     ::testing::Values(
+        Misdeed{"solid", "exit", promised, {"the solid failed in window ", "exited with status 3"}},
+        Misdeed{"fluid", "exit", promised, {"the fluid failed in window ", "exited with status 3"}},
         Misdeed{
-            "solid", "exit", promised, {"the solid failed " + in_window_5, "exited with status 3"}},
-        Misdeed{
-            "fluid", "exit", promised, {"the fluid failed " + in_window_5, "exited with status 3"}},
-        Misdeed{"fluid",
-                "leave",
-                promised,
-                {"the fluid failed " + in_window_5, "exited with status 0"}},
-        Misdeed{"solid", "kill", promised, {"the solid failed " + in_window_5, "signal 9"}},
+            "fluid", "leave", promised, {"the fluid failed in window ", "exited with status 0"}},
+        Misdeed{"solid", "kill", promised, {"the solid failed in window ", "signal 9"}},
         Misdeed{"fluid",
                 "stop",
                 silence + promised,
-                {"the fluid failed " + in_window_5, "no sign of life", "is stopped"}},
+                {"the fluid failed in window ", "no sign of life", "is stopped"}},
         Misdeed{"solid",
                 "raise",
                 promised,
@@ -183,8 +189,7 @@ INSTANTIATE_TEST_SUITE_P(
         return name;
     });
 
-// ----------------------------------------------------------------------------- before anything
-// starts
+// ------------------------------------------------------------------------- before anything starts
 
 TEST(Refused, AMissingProgram) {
     const Folder folder;

@@ -98,7 +98,7 @@ TEST(SceneCheck, Walls) {
 }
 
 TEST(SceneCheck, Bodies) {
-    expect_fault("solid.body[0].rectangle.height=5", "reaches out of fluid.region");
+    expect_fault("solid.body[0].rectangle.width=4", "reaches out of fluid.region");
     expect_fault("solid.body[0].element_size=1.5", "larger than the body's shorter side");
     expect_fault("solid.body[0].motion=\"deformable\"", "lacks the key 'youngs_modulus'");
     expect_fault("solid.body[0].initial_velocity=[1, 0]", "cannot have a velocity");
