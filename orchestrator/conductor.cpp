@@ -231,7 +231,7 @@ void Conductor::attend_message(Player& player, const v1::ToOrchestrator& message
         const v1::Report& report = message.report();
         player.reports.push_back(report);
         player.ledger = report.ledger();
-        player.timing = report.timing();
+        player.timing.MergeFrom(report.timing()); // phases come with samples only
         player.steps += report.steps();
         player.windows = report.window() + 1;
         player.time = report.time();
@@ -239,7 +239,7 @@ void Conductor::attend_message(Player& player, const v1::ToOrchestrator& message
     }
     case v1::ToOrchestrator::kBye:
         player.bye = true;
-        player.timing = message.bye().timing();
+        player.timing.MergeFrom(message.bye().timing());
         return;
     case v1::ToOrchestrator::kFailed: {
         player.failed = true;
