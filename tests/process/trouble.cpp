@@ -68,8 +68,7 @@ double now() {
     return std::chrono::duration<double>(DuetRun::Clock::now().time_since_epoch()).count();
 }
 
-// ------------------------------------------------------------------- the real solvers, from
-// outside
+// ------------------------------------------------------------- the real solvers, from outside
 
 struct Blow {
     std::string who;
@@ -111,8 +110,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Blow{"solid", SIGSTOP, silence + promised, "no sign of life for 3 s"},
                       Blow{"fluid", SIGSTOP, silence + promised, "no sign of life for 3 s"}));
 
-// ------------------------------------------------------------- solvers that misbehave by
-// themselves
+// -------------------------------------------------------- solvers that misbehave by themselves
 
 struct Misdeed {
     std::string who;
