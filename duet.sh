@@ -148,7 +148,8 @@ build() {
         (cd "$root" && configure && exec ninja -C "$build" -j "$(jobs)" "$@") \
             >"$log" 2>&1 </dev/null 9>&- &
         watch_log $! "$log" "Building Duet" ninja_count || {
-            { grep -v '^\[' "$log" || true; } | tail -n 60 >&2
+            # Ninja's steps and what CMake found are no help; the errors are.
+            { grep -v -e '^\[' -e '^-- ' "$log" || true; } | tail -n 60 >&2
             die "the build failed; the whole log is $log"
         }
     } 9>"$root/build/lock"
