@@ -182,6 +182,17 @@ TEST(Run, AKilledOrchestratorLeavesNothingRunning) {
     EXPECT_TRUE(eventually(5, [&] { return run.left_running().empty(); }));
 }
 
+TEST(Run, NorDoesItLeaveASolverThatListensToNobody) {
+    const Folder folder;
+    const std::string deaf =
+        "/usr/bin/python3 " DUET_SOURCE_DIR "/tests/process/misbehaving.py solid never-connect";
+    DuetRun run(folder, {"run", small, "--output", (folder / "out").string(), "--solid", deaf});
+    ASSERT_TRUE(eventually(patience, [&] { return !read(run.stamp()).empty(); })) << run.output();
+    run.signal(SIGKILL);
+    EXPECT_EQ(run.wait(5), 128 + SIGKILL);
+    EXPECT_TRUE(eventually(5, [&] { return run.left_running().empty(); }));
+}
+
 TEST(Verify, ExitStatusAndJsonTellTheVerdict) {
     const Folder folder;
     const std::filesystem::path json_file = folder / "verdict.json";

@@ -67,8 +67,8 @@ TEST(Calendar, LeasesTileTheRunAndMeetEveryMark) {
 }
 
 TEST(Calendar, RoundingDoesNotCostAWindow) {
-    Calendar calendar(scene(0.3, 0.3, 0, {})); // 0.3 / 0.1 is 2.9999999999999996
-    EXPECT_EQ(calendar.next(0.1, 16).count(), 3u);
+    Calendar calendar(scene(2.1, 2.1, 0, {})); // 2.1 / 0.7 is 3.0000000000000004
+    EXPECT_EQ(calendar.next(0.7, 16).count(), 3u);
 }
 
 TEST(Calendar, AFixedWindowOverrulesTheStableStep) {
