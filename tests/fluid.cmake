@@ -5,5 +5,5 @@ duet_test(fluid_unit LABEL unit
 
 duet_test(fluid_verification LABEL verification
     SOURCES verification/fluid_slab.cpp verification/fluid_two_layers.cpp verification/fluid_cavity.cpp
-        verification/fluid_hot_plate.cpp
+        verification/fluid_hot_plate.cpp verification/fluid_stokes_mode.cpp
     LIBRARIES duet_fluid_core)

@@ -39,6 +39,20 @@ TEST(FluidBoundary, ABodyIsCutOut) {
     EXPECT_LT(boundary.nearest({0.31, 0.302}).distance, 0);
 }
 
+TEST(FluidBoundary, BesideASharpTipTheFartherLineDecides) {
+    // A wedge of 30 degrees that points left: just off its tip, one side's line passes on the wrong
+    // side of the point.
+    const InterfaceState state = at_rest({{0.3, 0.5}, {0.7, 0.4}, {0.7, 0.6}});
+    const Boundary boundary(closed(square, 0.1, true), {{{0, 1, 2}, true}}, state);
+    for (const double step : {0.01, -0.01}) {
+        const auto nearest = boundary.nearest({0.29, 0.5 + step});
+        ASSERT_NE(nearest.face, nullptr);
+        EXPECT_EQ(nearest.point, (Vec2{0.3, 0.5}));
+        EXPECT_GT(nearest.distance, 0);
+    }
+    EXPECT_LT(boundary.nearest({0.32, 0.5}).distance, 0);
+}
+
 TEST(FluidBoundary, ALeaningBodyReplacesTheWallItCovers) {
     // It stands on the bottom from 0.4 to 0.6, 0.5 high: its wet chain runs over its sides and top,
     // fluid to the right.
