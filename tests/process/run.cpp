@@ -80,17 +80,40 @@ TEST(Run, TheFoldersCaseIsTheCaseAsRun) {
         given.scene, orchestrator::read_case(out).scene));
 }
 
-TEST(Run, TheOtherSchedulesRunAndBalance) {
-    for (const char* schedule : {"solid_first", "parallel"}) {
-        const Folder folder;
+TEST(Run, WindowsFromStableStepsAreTheSameEveryTime) {
+    const Folder folder;
+    for (const char* out : {"a", "b"}) {
         DuetRun run(folder,
-                    {"verify",
+                    {"run",
                      small,
                      "--output",
-                     (folder / "out").string(),
+                     (folder / out).string(),
                      "--set",
-                     std::string("coupling.schedule=\"") + schedule + "\""});
-        EXPECT_EQ(run.wait(patience), 0) << schedule << "\n" << run.output();
+                     "time.window=0",
+                     "--set",
+                     "time.end=2"});
+        ASSERT_EQ(run.wait(patience), 0) << run.output();
+    }
+    EXPECT_EQ(read(folder / "a/probes.csv"), read(folder / "b/probes.csv")) << "to the last bit";
+}
+
+TEST(Run, TheOtherSchedulesRunAndBalance) {
+    for (const char* schedule : {"solid_first", "parallel"}) {
+        // With windows of one length, and of changing ones: the load in flight keeps its impulse
+        // and heat.
+        for (const char* window : {"0.002", "0"}) {
+            const Folder folder;
+            DuetRun run(folder,
+                        {"verify",
+                         small,
+                         "--output",
+                         (folder / "out").string(),
+                         "--set",
+                         std::string("coupling.schedule=\"") + schedule + "\"",
+                         "--set",
+                         std::string("time.window=") + window});
+            EXPECT_EQ(run.wait(patience), 0) << schedule << "\n" << run.output();
+        }
     }
 }
 
