@@ -60,7 +60,9 @@ class Reader {
                              + std::to_string(bytes.size())
                              + " bytes; use the file that this run wrote");
         }
-        std::memcpy(to, bytes.data() + at, size);
+        if (size > 0) { // an empty vector has no address
+            std::memcpy(to, bytes.data() + at, size);
+        }
         at += size;
     }
     const std::string& bytes;
