@@ -406,6 +406,14 @@ double Boundary::area() const {
     return twice / 2;
 }
 
+double Boundary::speed() const {
+    double largest = 0;
+    for (const Vec2 v : velocity_) {
+        largest = std::max(largest, norm(v));
+    }
+    return largest;
+}
+
 bool Boundary::heated() const {
     return std::any_of(faces_.begin(), faces_.end(), [](const Face& f) { return f.heated; });
 }

@@ -113,8 +113,10 @@ class Boundary {
     std::size_t interface_nodes() const { return interface_nodes_; }
     /// Length of each wall of the configuration that is left beside leaning solids.
     const std::vector<double>& wall_length() const { return wall_length_; }
-    /// Highest and lowest prescribed temperature, over walls and interface.
+    /// Whether any temperature is prescribed, by a wall or the interface.
     bool heated() const;
+    /// Largest speed of a wall or an interface node, m/s.
+    double speed() const;
     Vec2 velocity(std::uint32_t node) const { return velocity_[node]; }
     double temperature(std::uint32_t node) const { return temperature_[node]; }
 

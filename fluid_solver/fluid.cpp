@@ -78,8 +78,8 @@ void Fluid::Implementation::start() {
             && (boundary_.heated()
                 || std::any_of(particles.fields.begin(), particles.fields.end(), differs));
     level();
+    sound_speed_ = 0; // the old one says nothing of the new fields
     measure();
-    sound_speed_ = 0;
     adapt_sound_speed();
     initial_heat_ = config.density * config.heat_capacity * volume
                     * sum([&](std::size_t a) { return particles.fields[a].T; });
@@ -98,6 +98,11 @@ void Fluid::Implementation::set_fields(const std::function<Values(Vec2)>& field)
     start();
 }
 
+/// Largest speed of the flow, which from rest is that of the walls and bodies that will drive it.
+double Fluid::Implementation::fastest() const {
+    return std::max(speed_, boundary_.speed());
+}
+
 double Fluid::Implementation::stable_step() const {
     const double dx = config.spacing;
     const double diffusivity =
@@ -107,8 +112,8 @@ double Fluid::Implementation::stable_step() const {
     if (slowest > 0) {
         limit = std::min(limit, courant_diffusion * dx * dx / slowest);
     }
-    if (speed_ > 0) {
-        limit = std::min(limit, courant_flow * dx / speed_);
+    if (fastest() > 0) {
+        limit = std::min(limit, courant_flow * dx / fastest());
     }
     // Never so long that hundreds of inner steps share one geometry.
     return std::min(limit, 50 * courant_sound * dx / sound_speed_);
@@ -381,10 +386,9 @@ void Fluid::Implementation::measure() {
              std::max(e[2], other[2]),
              e[3] + other[3]};
     }
-    const double before = speed_;
     speed_ = std::sqrt(e[0]);
     pressure_range_ = e[1] + e[2];
-    const double limit = sound_speed_ > 0 ? 2 * std::max(before, sound_speed_) : speed_;
+    const double limit = sound_speed_ > 0 ? 2 * sound_speed_ : speed_;
     if (e[3] > 0 || !(speed_ <= limit)) {
         std::size_t worst = 0;
         for (std::size_t a = 0; a < n; ++a) {
@@ -419,7 +423,7 @@ void Fluid::Implementation::adapt_sound_speed() {
         / static_cast<double>(particles.size());
     const double head = departure * dx;
     const double viscous = config.kinematic_viscosity / dx;
-    const double wanted = std::max({10 * speed_,
+    const double wanted = std::max({10 * fastest(),
                                     std::sqrt(10 * pressure_range_ / config.density),
                                     10 * std::sqrt(head),
                                     viscous});

@@ -67,6 +67,7 @@ class Fluid::Implementation {
     void correct_fields(double dt);
     void level();
     void measure();
+    double fastest() const;
     void adapt_sound_speed();
     void start();
 

@@ -40,8 +40,25 @@ void SolidSide::receive(const Window& window, Exchange& exchange) {
 }
 
 void SolidSide::advance(const Window& window, v1::Report& report) {
-    solid_.advance(window, load_, motion_, report);
+    solid_.advance(window, over(window), motion_, report);
     motion_.time = window.time + window.length;
+}
+
+/// The last load, as the mean over this window that brings the same impulse and heat. With the
+/// fluid first it is this window's own; else it comes from the window before, which may have been
+/// longer or shorter.
+const InterfaceLoad& SolidSide::over(const Window& window) {
+    if (load_.length == window.length)
+        return load_;
+    spread_ = load_;
+    spread_.time = window.time;
+    spread_.length = window.length;
+    const double ratio = load_.length / window.length;
+    for (double& force : spread_.force)
+        force *= ratio;
+    for (double& flow : spread_.heat_flow)
+        flow *= ratio;
+    return spread_;
 }
 
 void SolidSide::send(const Window& window, Exchange& exchange) {

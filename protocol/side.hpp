@@ -42,10 +42,13 @@ class SolidSide final : public Side {
     void restore(const v1::Checkpoint& checkpoint) override;
 
   private:
+    const InterfaceLoad& over(const Window& window);
+
     SolidSolver& solid_;
     InterfaceSize size_;
     InterfaceMotion motion_;
-    InterfaceLoad load_; // the last one; zero before the first
+    InterfaceLoad load_;   // the last one; zero before the first
+    InterfaceLoad spread_; // the same impulse and heat over a window of another length
 };
 
 class FluidSide final : public Side {

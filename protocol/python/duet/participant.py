@@ -77,8 +77,18 @@ class _SolidSide:
         self._load = codec.decode_load(window, data.receive())
 
     def advance(self, window, report):
-        self._motion = self._solid.advance(window, self._load, report)
+        self._motion = self._solid.advance(window, self._over(window), report)
         self._motion.time = window.time + window.length
+
+    def _over(self, window):
+        """The last load, as the mean over this window that brings the same impulse and heat: unless the fluid goes first, it
+        comes from the window before, which may have been longer or shorter."""
+        load = self._load
+        if load.length == window.length:
+            return load
+        ratio = load.length / window.length
+        return dataclasses.replace(load, force=ratio * load.force, heat_flow=ratio * load.heat_flow,
+                                   time=window.time, length=window.length)
 
     def send(self, window, codec, data):
         data.send(codec.encode_motion(window, self._motion))
