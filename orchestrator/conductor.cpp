@@ -26,6 +26,11 @@ double smaller_step(double a, double b) {
     return a == 0 ? b : b == 0 ? a : std::min(a, b);
 }
 
+/// Whether `failure` only says what its solver was told by the one that `origin` names.
+bool repeats(const Failure& failure, const Failure& origin) {
+    return failure.sentence().starts_with("T" + origin.who().substr(1) + " failed");
+}
+
 Conductor::Clock::duration seconds(double s) {
     return std::chrono::duration_cast<Conductor::Clock::duration>(duration<double>(s));
 }
@@ -301,6 +306,8 @@ void Conductor::attend_signal() {
 /// Its end is news unless it has taken its leave, or has said itself what went wrong.
 void Conductor::process_ended(Player& player) {
     player.ending = player.process->poll();
+    if (player.ending && player.ending->good)
+        read_last_words(player);
     if (!player.ending || player.failed || (player.bye && player.ending->good))
         return;
     std::string what = player.ending->text;
@@ -309,6 +316,17 @@ void Conductor::process_ended(Player& player) {
     if (!player.last_words.empty())
         what += "; it last printed: " + player.last_words;
     throw Failure(name_of(player), player.now(), what);
+}
+
+/// An orderly end may overtake the last words on the socket, among them its Bye: reads on to them.
+void Conductor::read_last_words(const Player& player) {
+    const Clock::time_point deadline = Clock::now() + std::chrono::seconds(1);
+    while (!player.solver.empty() && !player.bye && !player.failed) {
+        auto event = session_.next(deadline);
+        if (!event || (event->kind == Event::Kind::disconnected && event->role == player.role))
+            return;
+        attend(std::move(*event));
+    }
 }
 
 void Conductor::check_silence() {
@@ -337,8 +355,11 @@ Failure Conductor::root_cause(const Failure& first) {
         try {
             attend(std::move(*event));
         } catch (const Failure& other) {
-            if (!other.direct())
+            if (!other.direct()) {
+                if (repeats(first, other))
+                    return other;
                 continue;
+            }
             if (other.who() == first.who())
                 return other;
             return Failure(other.who(),

@@ -63,6 +63,7 @@ class Conductor {
     void attend_signal();
     void greet(Player& player, const v1::Hello& hello);
     void process_ended(Player& player);
+    void read_last_words(const Player& player);
     void check_silence();
     Failure root_cause(const Failure& first);
 
