@@ -37,6 +37,8 @@ class Checker {
             problem("", "the case holds neither [fluid] nor [solid]: there is nothing to model");
         if (scene_.time().window() > scene_.time().end())
             problem("time.window", "time.window must not be longer than time.end");
+        check_interval("output.interval", scene_.output().interval());
+        check_interval("output.probe_interval", scene_.output().probe_interval());
         if (scene_.has_fluid())
             check_fluid();
         if (scene_.has_solid())
@@ -96,6 +98,14 @@ class Checker {
                     + (near            ? "; did you mean '" + *near + "'?"
                        : names.empty() ? "; the case has none"
                                        : "; there is " + list(names, "and")));
+    }
+
+    /// So many records would fill memory and disk before the run has an end.
+    void check_interval(const std::string& path, double interval) {
+        constexpr double most = 1e6;
+        if (interval > 0 && scene_.time().end() / interval > most)
+            problem(path,
+                    path + " asks for more than a million records until time.end; make it longer");
     }
 
     void problem(const std::string& path, const std::string& sentence) {
