@@ -62,10 +62,12 @@ Calendar::Calendar(const v1::Scene& scene)
 v1::Lease Calendar::next(double stable, std::uint32_t most) {
     const Mark& mark = marks_[next_mark_];
     const double remaining = mark.time - time_;
-    const double longest = fixed_window_ > 0 ? fixed_window_ : stable;
+    // Without any limit still a hundred windows: a run is watched, and can be stopped, at their
+    // ends.
+    const double unlimited = marks_.back().time / 100;
+    const double longest = fixed_window_ > 0 ? fixed_window_ : stable > 0 ? stable : unlimited;
     // Rounding must not cost a window.
-    const double count =
-        longest > 0 ? std::max(1.0, std::ceil(remaining / longest * (1 - 1e-9))) : 1;
+    const double count = std::max(1.0, std::ceil(remaining / longest * (1 - 1e-9)));
     if (!(count < 1e9))
         throw std::runtime_error("windows of " + number_text(longest)
                                  + " s would be too many; the solvers' stable step has collapsed");

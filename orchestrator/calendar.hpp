@@ -27,9 +27,10 @@ class Calendar {
 
     bool done() const { return next_mark_ == marks_.size(); }
 
-    /// The next lease: `most` windows at most, each no longer than `stable` (s; 0: no limit) or, if
-    /// the case fixes it, than time.window; of equal length up to the next mark, where a window
-    /// always ends exactly. Throws std::runtime_error if the windows become hopelessly many.
+    /// The next lease: `most` windows at most, each no longer than `stable` (s; 0: no limit but a
+    /// hundredth of the run) or, if the case fixes it, than time.window; of equal length up to the
+    /// next mark, where a window always ends exactly. Throws std::runtime_error if the windows
+    /// become hopelessly many.
     v1::Lease next(double stable, std::uint32_t most);
 
   private:

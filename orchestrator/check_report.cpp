@@ -31,7 +31,7 @@ std::string number(double value) {
 
 std::string count(double value) {
     char text[32];
-    std::snprintf(text, sizeof text, "%.0f", value);
+    std::snprintf(text, sizeof text, value < 1e9 ? "%.0f" : "%.1e", value);
     return text;
 }
 

@@ -184,6 +184,8 @@ void Conductor::attend_next() {
         attend(std::move(*event));
     else
         check_silence(); // only when nothing is left unread
+    if (stopping_ && Clock::now() > stop_deadline_)
+        throw Interrupted();
 }
 
 void Conductor::attend(Event event) {
@@ -300,7 +302,9 @@ void Conductor::attend_signal() {
     if (gathering_ || stopping_)
         throw Interrupted();
     stopping_ = true;
-    progress_.say("stopping at the end of the window; once more to stop at once");
+    stop_deadline_ = Clock::now() + std::chrono::seconds(10);
+    progress_.say(
+        "stopping at the end of the window, in 10 s at the latest; once more to stop at once");
 }
 
 /// Its end is news unless it has taken its leave, or has said itself what went wrong.

@@ -86,6 +86,7 @@ class Conductor {
     double time_ = 0;                      // s, at the end of the last closed one
     bool gathering_ = true;
     bool stopping_ = false;
+    Clock::time_point stop_deadline_;
 };
 
 } // namespace duet::orchestrator

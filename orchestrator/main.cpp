@@ -10,6 +10,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <iostream>
 
@@ -32,8 +34,8 @@ Case checked_case(const Arguments& arguments) {
     return given;
 }
 
-std::uint32_t threads_of(const Arguments& arguments, const Case& given) {
-    return arguments.run.threads > 0 ? arguments.run.threads : default_threads(given.scene);
+std::uint32_t threads_of(const Arguments& arguments) {
+    return arguments.run.threads > 0 ? arguments.run.threads : default_threads();
 }
 
 /// Says where to look, or who failed, when, and with what.
@@ -57,7 +59,7 @@ int run(const Arguments& arguments) {
 
 int check(const Arguments& arguments) {
     const Case given = checked_case(arguments);
-    std::cout << check_report(given, threads_of(arguments, given));
+    std::cout << check_report(given, threads_of(arguments));
     return 0;
 }
 
@@ -66,6 +68,14 @@ int verify(const Arguments& arguments) {
     if (given.scene.check_size() == 0)
         throw std::runtime_error("the case " + given.file.string()
                                  + " holds no [[check]] to verify");
+    std::ofstream file; // opened, and so emptied, before the run: no verdict of an older one is
+                        // taken for this one's
+    if (!arguments.json.empty()) {
+        file.open(arguments.json);
+        if (!file)
+            throw std::runtime_error("cannot write " + arguments.json + ": "
+                                     + std::strerror(errno));
+    }
     const RunResult result = run_case(given, arguments.run);
     say_ending(result);
     if (result.ended != Ended::finished)
@@ -74,8 +84,8 @@ int verify(const Arguments& arguments) {
     std::cout << "\n" << verdict_table(verdicts, result);
     const std::string json = verdict_json(given, verdicts, result);
     std::ofstream(result.folder / "verify.json") << json;
-    if (!arguments.json.empty() && !(std::ofstream(arguments.json) << json << std::flush))
-        throw std::runtime_error("cannot write " + arguments.json);
+    if (!arguments.json.empty() && !(file << json << std::flush))
+        throw std::runtime_error("cannot write " + arguments.json + ": " + std::strerror(errno));
     std::cout << (all_pass(verdicts) ? "all checks pass\n" : "some checks FAIL\n");
     return all_pass(verdicts) ? 0 : 1;
 }

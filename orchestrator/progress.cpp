@@ -24,6 +24,8 @@ std::string format(const char* pattern, Values... values) {
 } // namespace
 
 std::string duration_text(double seconds) {
+    if (!(seconds < 3.6e9))
+        return format("%.1e h", seconds / 3600);
     const long whole = std::lround(std::max(0.0, seconds));
     if (seconds < 9.95)
         return format("%.1f s", seconds);

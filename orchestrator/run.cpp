@@ -196,8 +196,7 @@ RunResult run_case(const Case& given, const RunOptions& options) {
     try {
         for (std::size_t i = 0; i < parts.size(); ++i) {
             result.players[i].role = parts[i].role;
-            result.players[i].threads =
-                options.threads > 0 ? options.threads : default_threads(given.scene);
+            result.players[i].threads = options.threads > 0 ? options.threads : default_threads();
             start(result.players[i], parts[i], session.address(), progress, *log);
         }
         Score score;
@@ -224,14 +223,11 @@ RunResult run_case(const Case& given, const RunOptions& options) {
     return result;
 }
 
-std::uint32_t default_threads(const v1::Scene& scene) {
+std::uint32_t default_threads() {
     cpu_set_t allowed;
     CPU_ZERO(&allowed);
     ::sched_getaffinity(0, sizeof allowed, &allowed);
-    const auto cores = static_cast<std::uint32_t>(std::max(1, CPU_COUNT(&allowed)));
-    const bool at_once = scene.has_fluid() && scene.has_solid()
-                         && scene.coupling().schedule() == v1::Coupling::PARALLEL;
-    return at_once ? std::max(1U, cores / 2) : cores;
+    return static_cast<std::uint32_t>(std::max(1, CPU_COUNT(&allowed)));
 }
 
 double cpu_seconds(const Player& player) {

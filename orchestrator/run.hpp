@@ -49,9 +49,9 @@ int exit_status(const RunResult& result);
 /// program, a run folder in use.
 RunResult run_case(const Case& given, const RunOptions& options);
 
-/// Threads for each solver: all cores, since in serial schedules the two take turns; half of them
-/// if both advance at once.
-std::uint32_t default_threads(const v1::Scene& scene);
+/// Threads for each solver: all cores that this process may use. In serial schedules the two take
+/// turns; if both advance at once, one of them is done long before the other in most scenes.
+std::uint32_t default_threads();
 
 /// CPU time and peak memory of a solver: as the system counted them for its process or, for one
 /// started by hand, as it said itself.
