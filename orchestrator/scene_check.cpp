@@ -205,6 +205,9 @@ void Checker::check_boundary(const v1::Boundary& boundary,
     const Point& b = boundary.along(1);
     if (distance(a, b) <= tolerance_)
         return problem(path + ".along", path + ".along needs two different points");
+    if (boundary.has_temperature() && (boundary.heat_flux() != 0 || boundary.has_convection()))
+        problem(path + ".temperature",
+                path + " prescribes a temperature and a heat flux or convection; keep one of them");
     const Polygon sides = corners(rectangle);
     double found = 0;
     for (std::size_t i = 0; i < sides.size(); ++i)
@@ -285,6 +288,8 @@ void Checker::check_check(const v1::Check& check, const std::string& path) {
                         + number_text(scene_.time().end()) + " s");
     if (check.has_value() == !check.reference().empty())
         return problem(path, "a check needs either a 'value' or a 'reference' with its 'column'");
+    if (check.norm() == v1::Check::RELATIVE && check.value() == 0 && check.has_value())
+        problem(path + ".norm", "an error cannot be relative to 0; take the norm \"absolute\"");
     if (!check.reference().empty())
         check_reference(check, probe, path);
 }

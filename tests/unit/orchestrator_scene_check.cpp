@@ -70,6 +70,11 @@ TEST(SceneCheck, ShippedCasesPass) {
         EXPECT_NO_THROW(check_scene(read_case(std::string(DUET_SOURCE_DIR "/") + name))) << name;
 }
 
+TEST(SceneCheck, Records) {
+    expect_fault("output.interval=1e-7", "more than a million records");
+    expect_fault("output.probe_interval=1e-7", "more than a million records");
+}
+
 TEST(SceneCheck, Regions) {
     const std::string without =
         "[time]\nend = 1\n[fluid]\nspacing = 0.1\ndensity = 1\nkinematic_viscosity = 1\n";
@@ -104,6 +109,11 @@ TEST(SceneCheck, Bodies) {
     expect_fault("solid.body[0].initial_velocity=[1, 0]", "cannot have a velocity");
     expect_fault("solid.body[0].boundary[0].along=[[1, 0.5], [3, 0.5]]",
                  "no side of the body lies between");
+    EXPECT_NE(problems(good,
+                       {"solid.body[0].boundary[0].temperature=1",
+                        "solid.body[0].boundary[0].heat_flux=1"})
+                  .find("keep one of them"),
+              std::string::npos);
     const std::string second = "[[solid.body]]\nelement_size = 0.5\ndensity = 1\n";
     EXPECT_EQ(problems(good + second
                        + "name = 'b'\nrectangle = { corner = [1, 1], width = 1, height = 1 }\n"),
@@ -191,6 +201,7 @@ TEST_F(Checks, Faults) {
     expect_fault_with("quantity = 'heat_balance'\nvalue = 0\nat = [1]\n",
                       "belongs to the whole run");
     expect_fault_with(of_p + "value = 0\nat = [2]\n", "the time 2 lies outside the run, 0 to 1 s");
+    expect_fault_with(of_p + "value = 0\nnorm = 'relative'\n", "cannot be relative to 0");
     expect_fault_with(of_p, "either a 'value' or a 'reference'");
     expect_fault_with(of_p + "value = 1\nreference = 'good.csv'\ncolumn = 'T'\n",
                       "either a 'value'");
