@@ -60,6 +60,8 @@ ClosureParts Closure::advance_temperature(Particles& particles,
         }
         parts.conduction += conduction;
         parts.shift -= total.shifted;
+        parts.conduction_abs += std::abs(conduction);
+        parts.shift_abs += std::abs(total.shifted);
     }
 
     for_particles(n, threads_, [&](std::size_t a) {

@@ -12,8 +12,9 @@ namespace duet::fluid {
 
 /// What the closure gave back in one step, in kelvin times particles.
 struct ClosureParts {
-    double conduction = 0; ///< wall estimate minus Laplacian
-    double shift = 0;      ///< minus what the correction after the shift gave
+    double conduction = 0;                    ///< wall estimate minus Laplacian
+    double shift = 0;                         ///< minus what the correction after the shift gave
+    double conduction_abs = 0, shift_abs = 0; ///< absolute values, summed over the compartments
 };
 
 class Closure {

@@ -326,9 +326,9 @@ void Fluid::Implementation::correct_fields(double dt) {
         const ClosureParts parts =
             closure_.advance_temperature(particles, evaluation_, dt, passed_heat_);
         totals_.closure_conduction += capacity * parts.conduction;
-        totals_.closure_conduction_abs += capacity * std::abs(parts.conduction);
+        totals_.closure_conduction_abs += capacity * parts.conduction_abs;
         totals_.closure_shift += capacity * parts.shift;
-        totals_.closure_shift_abs += capacity * std::abs(parts.shift);
+        totals_.closure_shift_abs += capacity * parts.shift_abs;
     }
     for_particles(particles.size(), config.threads, [&](std::size_t a) {
         const Vec2 dr = evaluation_.shift[a];

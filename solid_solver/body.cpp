@@ -71,19 +71,25 @@ void Body::step(double dt) {
 std::uint32_t Body::advance(double length) {
     constexpr double safety = 0.9; // the bound is an estimate from below of a frequency that moves
     constexpr double steps_between_updates = 256;
-    const double limit = safety * stable_step();
-    const double count = limit > 0 ? std::max(1.0, std::ceil(length / limit)) : 1;
-    const auto steps = static_cast<std::uint32_t>(std::min(count, 4e9));
-    for (std::uint32_t i = 0; i < steps; ++i) {
-        step(length / steps);
+    std::uint32_t taken = 0;
+    for (double left = length; left > 0;) {
+        const double limit = safety * stable_step();
+        const double count = limit > 0 ? std::max(1.0, std::ceil(left / limit)) : 1;
+        const double steps = std::min(count, steps_between_updates);
+        const double dt = left / count;
+        for (double i = 0; i < steps; ++i) {
+            step(dt);
+        }
+        check_finite();
+        taken += static_cast<std::uint32_t>(steps);
+        left = steps < count ? left - steps * dt : 0;
+        steps_since_update_ += steps;
+        if (mechanics_ && steps_since_update_ >= steps_between_updates) {
+            mechanics_->update_frequency();
+            steps_since_update_ = 0;
+        }
     }
-    check_finite();
-    steps_since_update_ += steps;
-    if (mechanics_ && steps_since_update_ >= steps_between_updates) {
-        mechanics_->update_frequency();
-        steps_since_update_ = 0;
-    }
-    return steps;
+    return taken;
 }
 
 void Body::check_finite() const {

@@ -38,8 +38,8 @@ class Body {
     void step(double dt);
 
     /// Advances by `length` in the least number of equal steps not longer than 0.9 of the stable
-    /// one; returns their number. Throws std::runtime_error naming body and node if the numbers
-    /// are no longer finite.
+    /// one, which is looked at again every 256 steps; returns their number. Throws
+    /// std::runtime_error naming body and node if the numbers are no longer finite.
     std::uint32_t advance(double length);
 
     std::span<const double> temperature() const { return heat_.temperature(); } ///< [N] K
