@@ -60,7 +60,7 @@ Json player_json(const Player& player) {
             {"waiting_for_peer_seconds", player.timing.waiting_for_peer()},
             {"waiting_for_lease_seconds", player.timing.waiting_for_lease()},
             {"waiting_share", waiting_share(player)},
-            {"seconds_by_phase", phases},
+            {"cpu_seconds_by_phase", phases},
             {"ledger", ledger_json(player.ledger)}};
 }
 
