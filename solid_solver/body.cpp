@@ -92,6 +92,14 @@ std::uint32_t Body::advance(double length) {
     return taken;
 }
 
+Equilibrium Body::find_equilibrium(double tolerance) {
+    try {
+        return solid::find_equilibrium(mechanics_.value(), temperature(), tolerance);
+    } catch (const std::runtime_error& fault) {
+        throw std::runtime_error("Body '" + config_.name + "': " + fault.what());
+    }
+}
+
 void Body::check_finite() const {
     const std::span<const double> t = temperature(), v = velocity();
     for (std::size_t i = 0; i < nodes(); ++i) {

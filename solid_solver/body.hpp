@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include "solid_solver/equilibrium.hpp"
 #include "solid_solver/heat.hpp"
 #include "solid_solver/mechanics.hpp"
 
@@ -41,6 +42,10 @@ class Body {
     /// one, which is looked at again every 256 steps; returns their number. Throws
     /// std::runtime_error naming body and node if the numbers are no longer finite.
     std::uint32_t advance(double length);
+
+    /// Puts a deformable body to rest in static equilibrium with its loads at its temperature; see
+    /// find_equilibrium. Throws std::runtime_error naming the body if there is none.
+    Equilibrium find_equilibrium(double tolerance = 1e-9);
 
     std::span<const double> temperature() const { return heat_.temperature(); } ///< [N] K
     std::span<const double> position() const;                                   ///< [N][2] m

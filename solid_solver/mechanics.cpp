@@ -9,7 +9,14 @@ namespace duet::solid {
 
 namespace {
 constexpr std::size_t slots = Domains::slots;
+
+/// The change of E = (F^T F - I)/2 at F = I + g by a change d of F: xx, yy, xy.
+std::array<double, 3> strain_change(const Mechanics::Gradient& g, const Mechanics::Gradient& d) {
+    return {(1 + g.xx) * d.xx + g.yx * d.yx,
+            g.xy * d.xy + (1 + g.yy) * d.yy,
+            0.5 * ((1 + g.xx) * d.xy + g.yx * d.yy + g.xy * d.xx + (1 + g.yy) * d.yx)};
 }
+} // namespace
 
 double PlaneTensor::von_mises() const {
     return std::sqrt(0.5 * ((xx - yy) * (xx - yy) + (yy - zz) * (yy - zz) + (zz - xx) * (zz - xx))
@@ -23,6 +30,7 @@ Mechanics::Mechanics(const BodyConfig& body,
     : domains_(domains), threads_(body.threads), lambda_(body.material.lambda()),
       mu_(body.material.mu()), beta_(body.material.beta()),
       reference_temperature_(body.reference_temperature), damping_(body.stiffness_damping),
+      heat_capacity_(body.material.density * body.material.heat_capacity),
       heated_(body.thermoelastic_heating && beta_ * reference_temperature_ != 0),
       capacity_(capacity.begin(), capacity.end()), spectrum_(2 * body.mesh.node.size()) {
     const std::vector<double> area = nodal_area(body.mesh);
@@ -40,14 +48,14 @@ Mechanics::Mechanics(const BodyConfig& body,
     apply_boundary(body);
     interface_.assign(2 * nodes, 0.0);
     internal_.assign(2 * nodes, 0.0);
-    displacement_.resize(2 * nodes);
+    displacement_.assign(2 * nodes, 0.0);
+    position_.resize(2 * nodes);
     stress_.assign(3 * domains.size(), 0.0);
     trace_.assign(domains.size(), 0.0);
     contribution_.resize(2 * slots * domains.size());
     heat_share_.resize(slots * domains.size());
     nodal_change_.resize(nodes);
-    const std::vector<double> start = velocity_;
-    set_motion(displacement_, start, temperature);
+    set_motion(std::vector<double>(2 * nodes, 0.0), std::vector<double>(velocity_), temperature);
     frequency_ = std::sqrt(spectrum_.largest(
         [this](const double* u, double* f) { apply_tangent(u, f); }, inverse_mass_));
 }
@@ -73,19 +81,22 @@ void Mechanics::apply_boundary(const BodyConfig& body) {
 void Mechanics::set_motion(std::span<const double> displacement,
                            std::span<const double> velocity,
                            std::span<const double> temperature) {
-    position_ = reference_;
-    velocity_.assign(velocity.begin(), velocity.end());
     for (std::size_t c = 0; c < position_.size(); ++c) {
-        if (inverse_mass_[c] == 0) {
-            velocity_[c] = 0;
-        } else {
-            position_[c] += displacement[c];
-        }
+        const bool held = inverse_mass_[c] == 0;
+        displacement_[c] = held ? 0 : displacement[c];
+        velocity_[c] = held ? 0 : velocity[c];
     }
+    place();
     compute_forces(0, temperature); // no rate yet: the damping sets in with the first step
     for (std::size_t k = 0; k < domains_.size(); ++k) {
         const Gradient g = displacement_gradient(k, displacement_.data());
         trace_[k] = g.xx + g.yy + 0.5 * (g.xx * g.xx + g.yx * g.yx + g.xy * g.xy + g.yy * g.yy);
+    }
+}
+
+void Mechanics::place() {
+    for (std::size_t c = 0; c < position_.size(); ++c) {
+        position_[c] = reference_[c] + displacement_[c];
     }
 }
 
@@ -108,9 +119,10 @@ void Mechanics::kick(double half_step) {
 
 void Mechanics::drift(double dt) {
     kick(0.5 * dt);
-    for (std::size_t c = 0; c < position_.size(); ++c) {
-        position_[c] += dt * velocity_[c];
+    for (std::size_t c = 0; c < displacement_.size(); ++c) {
+        displacement_[c] += dt * velocity_[c];
     }
+    place();
     for (const std::uint32_t c : loaded_) {
         work_ += interface_[c] * dt * velocity_[c];
         impulse_[c % 2] += interface_[c] * dt;
@@ -188,9 +200,6 @@ void Mechanics::gather(const std::vector<double>& contribution,
 /// Internal forces (20) and stiffness-proportional damping (63), its stress rate taken over the
 /// step that has just been made: P = F (S + b dS/dt).
 void Mechanics::compute_forces(double dt, std::span<const double> temperature) {
-    for (std::size_t c = 0; c < position_.size(); ++c) {
-        displacement_[c] = position_[c] - reference_[c];
-    }
     const double per_step = dt > 0 ? damping_ / dt : 0;
     in_pieces(domains_.size(), threads_, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
@@ -210,12 +219,44 @@ void Mechanics::compute_forces(double dt, std::span<const double> temperature) {
     gather(contribution_, internal_.data(), 2);
 }
 
+void Mechanics::evaluate(std::span<const double> displacement,
+                         std::span<const double> velocity,
+                         std::span<const double> temperature,
+                         std::span<const double> warming) {
+    std::copy(displacement.begin(), displacement.end(), displacement_.begin());
+    for (std::size_t k = 0; k < domains_.size(); ++k) {
+        const Gradient g = displacement_gradient(k, displacement_.data());
+        const PlaneTensor s = second_piola(g, domain_temperature(k, temperature));
+        stress_[3 * k] = s.xx;
+        stress_[3 * k + 1] = s.yy;
+        stress_[3 * k + 2] = s.xy;
+        std::array<double, 3> rate{};
+        if (damping_ > 0) {
+            const auto e = strain_change(g, displacement_gradient(k, velocity.data()));
+            const double mean = lambda_ * (e[0] + e[1]) - beta_ * domain_temperature(k, warming);
+            rate = {mean + 2 * mu_ * e[0], mean + 2 * mu_ * e[1], 2 * mu_ * e[2]};
+        }
+        put_force(
+            k, g, s.xx + damping_ * rate[0], s.yy + damping_ * rate[1], s.xy + damping_ * rate[2]);
+    }
+    gather(contribution_, internal_.data(), 2);
+}
+
+Mechanics::Linearised Mechanics::linearised(std::size_t k) const {
+    const double warming = heated_ ? beta_ * beta_ * reference_temperature_ / heat_capacity_ : 0;
+    return {domains_.area[k],
+            domains_.gradient_x[k],
+            domains_.gradient_y[k],
+            displacement_gradient(k, displacement_.data()),
+            {stress_[3 * k], stress_[3 * k + 1], stress_[3 * k + 2], 0},
+            lambda_,
+            mu_,
+            warming};
+}
+
 std::span<const double> Mechanics::heating(double dt) {
     if (!heated_) {
         return {};
-    }
-    for (std::size_t c = 0; c < position_.size(); ++c) {
-        displacement_[c] = position_[c] - reference_[c];
     }
     const double factor = -beta_ * reference_temperature_ / dt;
     in_pieces(domains_.size(), threads_, [&](std::size_t begin, std::size_t end) {
@@ -239,16 +280,10 @@ std::span<const double> Mechanics::heating(double dt) {
 /// temperature that the compression itself brings about: the adiabatic tangent, as the time
 /// stepping sees it (62).
 void Mechanics::apply_tangent(const double* u, double* force) {
-    const auto strain = [](const Gradient& g, const Gradient& d) {
-        return std::array<double, 3>{
-            (1 + g.xx) * d.xx + g.yx * d.yx,
-            g.xy * d.xy + (1 + g.yy) * d.yy,
-            0.5 * ((1 + g.xx) * d.xy + g.yx * d.yy + g.xy * d.xx + (1 + g.yy) * d.yx)};
-    };
     if (heated_) {
         for (std::size_t k = 0; k < domains_.size(); ++k) {
-            const auto e =
-                strain(displacement_gradient(k, displacement_.data()), displacement_gradient(k, u));
+            const auto e = strain_change(displacement_gradient(k, displacement_.data()),
+                                         displacement_gradient(k, u));
             const double heat = -beta_ * reference_temperature_ * domains_.area[k] * (e[0] + e[1]);
             for (std::size_t s = 0; s < slots; ++s) {
                 heat_share_[slots * k + s] = heat * domains_.weight[k][s];
@@ -262,7 +297,7 @@ void Mechanics::apply_tangent(const double* u, double* force) {
     for (std::size_t k = 0; k < domains_.size(); ++k) {
         const Gradient g = displacement_gradient(k, displacement_.data());
         const Gradient d = displacement_gradient(k, u);
-        const auto e = strain(g, d);
+        const auto e = strain_change(g, d);
         const double warming = heated_ ? domain_temperature(k, nodal_change_) : 0;
         const double mean = lambda_ * (e[0] + e[1]) - beta_ * warming;
         put_force(k, g, mean + 2 * mu_ * e[0], mean + 2 * mu_ * e[1], 2 * mu_ * e[2]);
@@ -311,12 +346,8 @@ double Mechanics::kinetic_energy() const {
 
 double Mechanics::strain_energy() const {
     double energy = 0;
-    std::vector<double> u(position_.size());
-    for (std::size_t c = 0; c < u.size(); ++c) {
-        u[c] = position_[c] - reference_[c];
-    }
     for (std::size_t k = 0; k < domains_.size(); ++k) {
-        const Gradient g = displacement_gradient(k, u.data());
+        const Gradient g = displacement_gradient(k, displacement_.data());
         const double exx = g.xx + 0.5 * (g.xx * g.xx + g.yx * g.yx);
         const double eyy = g.yy + 0.5 * (g.xy * g.xy + g.yy * g.yy);
         const double exy = 0.5 * (g.xy + g.yx + g.xx * g.xy + g.yx * g.yy);
@@ -329,15 +360,7 @@ double Mechanics::strain_energy() const {
 
 /// sigma = F S F^T / J; out of the plane F is one.
 PlaneTensor Mechanics::domain_stress(std::size_t k, std::span<const double> temperature) const {
-    Gradient g{0, 0, 0, 0};
-    for (std::size_t s = 0; s < slots; ++s) {
-        const std::size_t c = 2 * domains_.node[k][s];
-        const double ux = position_[c] - reference_[c], uy = position_[c + 1] - reference_[c + 1];
-        g.xx += ux * domains_.gradient_x[k][s];
-        g.xy += ux * domains_.gradient_y[k][s];
-        g.yx += uy * domains_.gradient_x[k][s];
-        g.yy += uy * domains_.gradient_y[k][s];
-    }
+    const Gradient g = displacement_gradient(k, displacement_.data());
     const PlaneTensor s = second_piola(g, domain_temperature(k, temperature));
     const double fxx = 1 + g.xx, fyy = 1 + g.yy;
     const double jacobian = fxx * fyy - g.xy * g.yx;

@@ -69,6 +69,7 @@ class Mechanics {
 
     template <class Visit>
     void visit_state(const Visit& visit) {
+        visit(displacement_);
         visit(position_);
         visit(velocity_);
         visit(internal_);
@@ -81,11 +82,38 @@ class Mechanics {
         visit(spectrum_.mode());
     }
 
-  private:
-    /// F - I of a domain: f[i][j] = du_i/dX_j.
+    /// -(f_int + f_damp) at a trial motion, into internal_force(): `displacement` and `velocity`
+    /// [N][2] and the temperature [N] with its rate [N] K/s. The velocity counts for the damping
+    /// alone, with the stress rate (63) of the motion itself.
+    void evaluate(std::span<const double> displacement,
+                  std::span<const double> velocity,
+                  std::span<const double> temperature,
+                  std::span<const double> warming);
+
+    /// F - I of a domain: g.ij = du_i/dX_j.
     struct Gradient {
         double xx, xy, yx, yy;
     };
+    /// What the tangent of a domain is made of, at the motion of the last forces.
+    struct Linearised {
+        double area;
+        const std::array<double, Domains::slots>&x, &y;
+        Gradient g;
+        PlaneTensor stress; ///< second Piola-Kirchhoff
+        double lambda, mu;  ///< isothermal
+        double warming;     ///< adiabatic less isothermal lambda, beta^2 T0/(rho c)
+    };
+    Linearised linearised(std::size_t domain) const;
+
+    const Domains& domains() const { return domains_; }
+    std::span<const double> inverse_mass() const { return inverse_mass_; } ///< [N][2], 0 where held
+    std::span<const double> displacement() const { return displacement_; } ///< [N][2] m
+    /// [N][2] N/m: body force, traction and interface.
+    double load(std::size_t component) const {
+        return constant_[component] + interface_[component];
+    }
+
+  private:
     Gradient displacement_gradient(std::size_t domain, const double* displacement) const;
     double domain_temperature(std::size_t domain, std::span<const double> temperature) const;
     PlaneTensor second_piola(const Gradient& g, double temperature) const;
@@ -95,11 +123,13 @@ class Mechanics {
     void apply_tangent(const double* u, double* force);
     void apply_boundary(const BodyConfig& body);
     void kick(double half_step);
+    void place(); ///< positions from the displacement
 
     const Domains& domains_;
     int threads_;
     double lambda_, mu_, beta_, reference_temperature_, damping_;
-    bool heated_; ///< thermo-elastic heating is on and not zero
+    double heat_capacity_; ///< J/(m3 K)
+    bool heated_;          ///< thermo-elastic heating is on and not zero
 
     std::vector<double> reference_;     ///< [N][2] m
     std::vector<double> mass_;          ///< [N]
@@ -109,7 +139,9 @@ class Mechanics {
     std::vector<double> interface_;     ///< [N][2] N/m
     std::vector<std::uint32_t> loaded_; ///< components of interface_ that are not zero
 
-    std::vector<double> position_, velocity_; ///< [N][2]
+    /// [N][2]. The displacement is kept for itself: small strains would drown in the rounding of
+    /// differences of positions.
+    std::vector<double> displacement_, position_, velocity_;
     std::vector<double> internal_; ///< [N][2] N/m, -(f_int + f_damp) at the last positions
     std::vector<double> stress_;   ///< [K][3] second Piola-Kirchhoff, xx, yy, xy
     std::vector<double> trace_;    ///< [K] tr(E) at the last call of heating
@@ -118,8 +150,7 @@ class Mechanics {
     double frequency_ = 0;
     Spectrum spectrum_;
 
-    std::vector<double> displacement_; ///< [N][2] work space
-    std::vector<double> contribution_; ///< [K][slots][2]
+    std::vector<double> contribution_; ///< [K][slots][2] work space
     std::vector<double> heat_share_;   ///< [K][slots]
     std::vector<double> heating_;      ///< [N]
     std::vector<double> nodal_change_; ///< [N]

@@ -1,0 +1,25 @@
+// Static equilibrium of a body under its loads, by Newton's method.
+
+#pragma once
+
+#include "solid_solver/mechanics.hpp"
+
+#include <span>
+
+namespace duet::solid {
+
+/// How an equilibrium was found.
+struct Equilibrium {
+    int iterations = 0; ///< Newton iterations, of all load steps
+    double residual =
+        0; ///< |f_ext - f_int| over the free components, relative to the forces at work
+};
+
+/// Moves the body to rest in equilibrium with its constant loads, interface forces and
+/// `temperature` [N]; held components stay where they are. Newton's method with the exact tangent;
+/// where it does not converge the imbalance of the start is taken away in steps. Throws
+/// std::runtime_error with a sentence if there is no way to |residual| <= tolerance.
+Equilibrium
+find_equilibrium(Mechanics& mechanics, std::span<const double> temperature, double tolerance);
+
+} // namespace duet::solid
