@@ -8,94 +8,82 @@
 
 namespace duet::fluid {
 
-Evaluation::Evaluation(double spacing, int threads)
-    : threads_(threads), kernel_(support_in_spacings * spacing), ghosts_(spacing),
-      sample_depth_(1.5 * spacing) {}
-
-void Evaluation::resize(std::size_t n) {
-    L.resize(n);
-    slope_x.resize(n);
-    slope_y.resize(n);
-    viscous.resize(n);
-    heating.resize(n);
-    shift.resize(n);
-    wall.resize(n);
-    near_wall.resize(n);
-    near_heated.resize(n);
-    count.resize(n);
-    samples.resize(chunks_of(n));
-    pairs_.resize(n * stride_);
-}
-
 namespace {
+
+/// A cloud in order has 20 or 21 neighbours: three eights, and some have one more.
+constexpr std::size_t usual_chunk_blocks = chunk_size * 3 + chunk_size / 4;
+constexpr std::size_t most_chunk_blocks = chunk_size * (most_neighbours / eight);
 
 /// Sums over the neighbours of one particle, by lanes u, v, p, T.
 struct PairSums {
-    Lanes gradient_x{}, gradient_y{}; ///< sum w (f_b - f_a)
-    Lanes laplacian{};                ///< sum 2 V F (e.B e)(f_a - f_b)
+    Four gradient_x{}, gradient_y{}; ///< sum w (f_b - f_a)
+    Four laplacian{};                ///< sum 2 V F (e.B e)(f_a - f_b)
 };
 
-/// weight(k) is a number, or four where the temperature has a tensor B of its own.
-template <class Weight>
+/// laplacian(block, k) is the weight of the neighbour for the Laplacian, by lanes or one for all.
+/// Differences are taken in double precision, so that large equal parts cost no digits.
+template <class Weights>
 PairSums pair_sums(const Particles& particles,
                    std::size_t a,
-                   const Neighbours& near,
-                   const Weights& w,
-                   const Weight& weight) {
+                   std::span<const PairBlock> pairs,
+                   const Weights& laplacian) {
     PairSums sums;
     const Lanes fa = load(particles.fields[a]);
-    for (int i = 0; i < near.count; ++i) {
-        const auto k = static_cast<std::size_t>(i);
-        const Lanes difference = load(particles.fields[near.index[k]]) - fa;
-        sums.gradient_x += w.x[k] * difference;
-        sums.gradient_y += w.y[k] * difference;
-        sums.laplacian -= weight(k) * difference;
+    for (std::size_t b = 0; b < pairs.size(); ++b) {
+        const PairBlock& block = pairs[b];
+        const auto weights = laplacian(b);
+        for (std::size_t k = 0; k < eight; ++k) {
+            const Lanes exact = load(particles.fields[block.index[k]]) - fa;
+            const Four difference = __builtin_convertvector(exact, Four);
+            sums.gradient_x += block.x[k] * difference;
+            sums.gradient_y += block.y[k] * difference;
+            sums.laplacian -= weights(k) * difference;
+        }
     }
     return sums;
 }
 
-/// 2 V F (e.B e) of every neighbour.
-void laplacian_weights(const Symmetric& B,
-                       const Neighbours& near,
-                       const Weights& w,
-                       std::array<double, most_neighbours>& out) {
-    for (int i = 0; i < near.count; ++i) {
-        const auto k = static_cast<std::size_t>(i);
-        const double x = near.x[k], y = near.y[k];
-        out[k] = 2 * w.F[k] * (B[0] * x * x + 2 * B[1] * x * y + B[2] * y * y) / near.r2[k];
-    }
-}
+/// 2 V F (e.B e) of eight neighbours.
+struct LaplacianWeights {
+    alignas(32) float values[eight];
 
-/// Lays the weights of the neighbours out pair by pair, four pairs at a time (the room for a
-/// particle's pairs is a multiple of four).
-void interleave(const Weights& w, const Neighbours& near, PairWeight* pairs) {
-    using Four = float __attribute__((vector_size(16)));
-    const auto take = [](const auto& from, std::size_t k) {
-        Four values;
-        std::memcpy(&values, &from[k], sizeof values);
-        return values;
-    };
-    for (std::size_t k = 0; k < static_cast<std::size_t>(near.count); k += 4) {
-        const Four x = take(w.x_float, k), y = take(w.y_float, k), F = take(w.F_float, k);
-        const Four index = take(near.index, k);
-        const Four xy01 = __builtin_shufflevector(x, y, 0, 4, 1, 5);
-        const Four xy23 = __builtin_shufflevector(x, y, 2, 6, 3, 7);
-        const Four Fi01 = __builtin_shufflevector(F, index, 0, 4, 1, 5);
-        const Four Fi23 = __builtin_shufflevector(F, index, 2, 6, 3, 7);
-        const Four rows[4] = {__builtin_shufflevector(xy01, Fi01, 0, 1, 4, 5),
-                              __builtin_shufflevector(xy01, Fi01, 2, 3, 6, 7),
-                              __builtin_shufflevector(xy23, Fi23, 0, 1, 4, 5),
-                              __builtin_shufflevector(xy23, Fi23, 2, 3, 6, 7)};
-        std::memcpy(static_cast<void*>(pairs + k), rows, sizeof rows);
+    LaplacianWeights(const std::array<float, 3>& B, const DirectionWeights& d, std::size_t block) {
+        const std::size_t k = block * eight;
+        store(values,
+              B[0] * load_eight(&d.xx[k]) + B[1] * load_eight(&d.xy[k])
+                  + B[2] * load_eight(&d.yy[k]));
     }
-}
+    float operator()(std::size_t k) const { return values[k]; }
+};
 
+/// The same where the temperature has a tensor of its own.
+struct TwoLaplacianWeights {
+    LaplacianWeights velocity, temperature;
+
+    Four operator()(std::size_t k) const {
+        return Four{velocity(k), velocity(k), 0, temperature(k)};
+    }
+};
+
+/// Drops the neighbours that walls hide.
 void drop_hidden(const std::vector<Contact>& contacts, Neighbours& near) {
-    for (int i = near.count - 1; i >= 0; --i) {
-        const auto k = static_cast<std::size_t>(i);
-        if (Ghosts::hidden(contacts, {-near.x[k], -near.y[k]})) {
-            near.drop(i);
+    // What is not behind the line of any face is not hidden either; so it is nearly everywhere.
+    bool behind = false;
+    for (const Contact& contact : contacts) {
+        const auto nx = static_cast<float>(contact.face->normal.x);
+        const auto ny = static_cast<float>(contact.face->normal.y);
+        const auto distance = static_cast<float>(contact.distance * (1 - 1e-6));
+        int beyond = 0;
+        for (std::size_t k = 0; k < near.count; ++k) {
+            beyond |= -near.x[k] * nx - near.y[k] * ny >= distance ? 1 : 0;
         }
+        behind = behind || beyond != 0;
+    }
+    if (behind) {
+        near.filter([&](std::size_t k) {
+            return !Ghosts::hidden(
+                contacts, {-static_cast<double>(near.x[k]), -static_cast<double>(near.y[k])});
+        });
     }
 }
 
@@ -110,117 +98,182 @@ Vec2 push_off(const std::vector<Contact>& contacts, double spacing) {
     return push;
 }
 
+Correction narrow(const Mat2& m) {
+    return {static_cast<float>(m.xx),
+            static_cast<float>(m.xy),
+            static_cast<float>(m.yx),
+            static_cast<float>(m.yy)};
+}
+
 } // namespace
 
-/// What one thread needs for one particle at a time.
-struct Evaluation::Scratch {
-    Neighbours near;
-    Weights weights;
-    Moments moments;
-    alignas(32) std::array<double, most_neighbours> laplacian, laplacian_T;
+/// What is kept of one particle while the operators of its batch are solved.
+struct Evaluation::Work {
+    DirectionWeights directions;
     std::vector<Contact> contacts;
     WallSums walls;
+    Mat2 pressure;                             ///< near walls: L of the pressure
+    std::size_t velocity = 0, temperature = 0; ///< places in the batch of operators
 };
 
-bool Evaluation::gather(std::size_t a, const Particles& particles, const Scene& scene, Scratch& s) {
+/// What one thread needs for a batch of particles: first the moments of each, then all operators,
+/// then the fields of each.
+struct Evaluation::Scratch {
+    int column = -1, row = -1; ///< of the surroundings
+    Surroundings surroundings;
+    Neighbours near;
+    std::array<Work, OperatorBatch::room / 2> work;
+    OperatorBatch operators;
+    std::size_t blocks = 0; ///< used of the chunk's
+};
+
+Evaluation::Evaluation(double spacing, int threads)
+    : threads_(threads), kernel_(support_in_spacings * spacing), ghosts_(spacing),
+      sample_depth_(1.5 * spacing), chunk_blocks_(usual_chunk_blocks) {}
+
+void Evaluation::resize(std::size_t n) {
+    L.resize(n);
+    slope_x.resize(n);
+    slope_y.resize(n);
+    viscous.resize(n);
+    heating.resize(n);
+    shift.resize(n);
+    weight_sum.resize(n);
+    near_heated.resize(n);
+    count.resize(n);
+    first_block_.resize(n);
+    wall_slot_.resize(n);
+    const std::size_t chunks = chunks_of(n);
+    samples.resize(chunks);
+    wall_.resize(chunks);
+    pairs_.resize(chunks * chunk_blocks_);
+}
+
+/// Neighbours, pair weights and moments of one particle, and the operators that they ask for.
+template <bool Heat>
+bool Evaluation::gather(
+    std::size_t a, const Particles& particles, const Scene& scene, Scratch& s, Work& work) {
     const Vec2 x = particles.position(a);
-    if (!find_neighbours(particles, scene.grid, kernel_.support(), a, s.near)) {
+    const int column = scene.grid.column(x.x), row = scene.grid.row(x.y);
+    if (column != s.column || row != s.row) {
+        s.column = column;
+        s.row = row;
+        if (!s.surroundings.collect(particles, scene.grid, column, row)) {
+            return false;
+        }
+    }
+    const auto support = static_cast<float>(kernel_.support());
+    if (!s.surroundings.find(x, support, s.near)) {
         return false;
     }
-    s.contacts.clear();
+    work.contacts.clear();
     if (scene.boundary.near(x)) {
-        scene.boundary.contacts(x, s.contacts);
+        scene.boundary.contacts(x, work.contacts);
+        drop_hidden(work.contacts, s.near);
     }
-    near_wall[a] = !s.contacts.empty();
-    if (near_wall[a]) {
-        drop_hidden(s.contacts, s.near);
-    }
-    count[a] = static_cast<std::uint8_t>(s.near.count);
-    if (count[a] > stride_) {
+    if (s.blocks + s.near.eights() > chunk_blocks_) {
         return false;
     }
-    weigh(kernel_, scene.input.volume, s.near, s.weights);
-    interleave(s.weights, s.near, &pairs_[a * stride_]);
-    s.moments = moments(s.near, s.weights);
+    s.near.pad(support, static_cast<std::uint32_t>(a));
+    count[a] = static_cast<std::uint8_t>(s.near.count);
+    first_block_[a] = static_cast<std::uint16_t>(s.blocks);
+    s.blocks += s.near.eights();
+    const Moments m = weigh(kernel_,
+                            static_cast<float>(scene.input.volume),
+                            s.near,
+                            &pairs_[a / chunk_size * chunk_blocks_ + first_block_[a]],
+                            work.directions);
+    weight_sum[a] = {m.wx, m.wy};
+    work.velocity = work.temperature = s.operators.size();
+    if (work.contacts.empty()) {
+        s.operators.add(m);
+        return true;
+    }
+    // Velocity and temperature have tensors of their own: not every wall is heated, and beside two
+    // faces their sums differ from the pressure's.
+    const WallSums& w = work.walls;
+    ghosts_.sums(x, scene.boundary, work.contacts, work.walls);
+    work.pressure = correction(m, w.N_n);
+    s.operators.add(m, w.velocity.S_xi, w.velocity.S_xi_xi, w.velocity);
+    if constexpr (Heat) {
+        work.temperature = s.operators.size();
+        s.operators.add(m,
+                        w.temperature.S_xi + w.adiabatic.N_n,
+                        w.temperature.S_xi_xi + w.adiabatic.N_d_n_n,
+                        w.temperature);
+    }
     return true;
 }
 
-void Evaluation::store_diffusion(std::size_t a, const EvaluationInput& input, const Lanes& lap) {
-    viscous[a] = {input.viscosity * lap[0], input.viscosity * lap[1]};
-    heating[a] = input.diffusivity * lap[3];
+void Evaluation::store_diffusion(std::size_t a, const EvaluationInput& input, const Four& lap) {
+    viscous[a] = {input.viscosity * static_cast<double>(lap[0]),
+                  input.viscosity * static_cast<double>(lap[1])};
+    heating[a] = input.diffusivity * static_cast<double>(lap[3]);
 }
 
 void Evaluation::interior(std::size_t a,
                           const Particles& particles,
                           const Scene& scene,
-                          Scratch& s) {
-    const Moments& m = s.moments;
+                          const Scratch& s,
+                          const Work& work) {
     near_heated[a] = 0;
-    L[a] = correction(m, {});
-    const LaplacianTensor t = laplacian_tensor(m, gradient_error(m, L[a], {}), {});
-    laplacian_weights(t.B, s.near, s.weights, s.laplacian);
-    const PairSums sums =
-        pair_sums(particles, a, s.near, s.weights, [&](std::size_t k) { return s.laplacian[k]; });
-    const Lanes gx = L[a].xx * sums.gradient_x + L[a].xy * sums.gradient_y;
-    const Lanes gy = L[a].yx * sums.gradient_x + L[a].yy * sums.gradient_y;
+    wall_slot_[a] = no_wall;
+    const auto B = s.operators.B(work.velocity);
+    const auto E = s.operators.E(work.velocity);
+    const PairSums sums = pair_sums(particles, a, pairs(a), [&](std::size_t block) {
+        return LaplacianWeights(B, work.directions, block);
+    });
+    L[a] = narrow(s.operators.L(work.velocity));
+    const Four gx = L[a].xx * sums.gradient_x + L[a].xy * sums.gradient_y;
+    const Four gy = L[a].yx * sums.gradient_x + L[a].yy * sums.gradient_y;
     store(slope_x[a], gx);
     store(slope_y[a], gy);
-    store_diffusion(a, scene.input, sums.laplacian - t.E.x * gx - t.E.y * gy);
+    store_diffusion(a, scene.input, sums.laplacian - E[0] * gx - E[1] * gy);
     shift[a] = shift_vector(
-        m.gradient_of_concentration, {}, scene.input.shift_factor, scene.input.spacing);
+        {weight_sum[a].x, weight_sum[a].y}, {}, scene.input.shift_factor, scene.input.spacing);
 }
 
-template <bool Heat>
 void Evaluation::beside_walls(std::size_t a,
                               const Particles& particles,
                               const Scene& scene,
-                              Scratch& s) {
-    const Moments& m = s.moments;
-    const WallSums& w = s.walls;
-    ghosts_.sums(particles.position(a), scene.boundary, s.contacts, s.walls);
+                              const Scratch& s,
+                              const Work& work) {
+    const WallSums& w = work.walls;
     near_heated[a] = w.temperature.K != 0;
-
-    // Velocity and temperature have tensors of their own: not every wall is heated, and beside two
-    // faces their sums differ from the pressure's.
-    L[a] = correction(m, w.N_n);
-    const Mat2 Lv = correction(m, w.velocity.S_xi);
-    const LaplacianTensor v =
-        laplacian_tensor(m, gradient_error(m, Lv, w.velocity.S_xi_xi), w.velocity);
-    laplacian_weights(v.B, s.near, s.weights, s.laplacian);
-    Mat2 LT = Lv;
-    LaplacianTensor T = v;
-    if constexpr (Heat) {
-        LT = correction(m, w.temperature.S_xi + w.adiabatic.N_n);
-        T = laplacian_tensor(
-            m, gradient_error(m, LT, w.temperature.S_xi_xi + w.adiabatic.N_d_n_n), w.temperature);
-        laplacian_weights(T.B, s.near, s.weights, s.laplacian_T);
-    } else {
-        s.laplacian_T = s.laplacian;
-    }
-    const PairSums sums = pair_sums(particles, a, s.near, s.weights, [&](std::size_t k) {
-        return Lanes{s.laplacian[k], s.laplacian[k], 0, s.laplacian_T[k]};
+    const Mat2 Lv = s.operators.L(work.velocity), LT = s.operators.L(work.temperature);
+    const auto Bv = s.operators.B(work.velocity), BT = s.operators.B(work.temperature);
+    const auto Ev = s.operators.E(work.velocity), ET = s.operators.E(work.temperature);
+    const PairSums sums = pair_sums(particles, a, pairs(a), [&](std::size_t block) {
+        return TwoLaplacianWeights{LaplacianWeights(Bv, work.directions, block),
+                                   LaplacianWeights(BT, work.directions, block)};
     });
+    const auto wide = [](const Four& f) { return __builtin_convertvector(f, Lanes); };
     const Lanes fa = load(particles.fields[a]);
     const Lanes Sx{w.velocity.S.x, w.velocity.S.x, 0, w.temperature.S.x};
     const Lanes Sy{w.velocity.S.y, w.velocity.S.y, 0, w.temperature.S.y};
     const Lanes K{w.velocity.K, w.velocity.K, 0, w.temperature.K};
-    const Lanes rx = sums.gradient_x + w.Sx_value - Sx * fa;
-    const Lanes ry = sums.gradient_y + w.Sy_value - Sy * fa;
+    const Lanes rx = wide(sums.gradient_x) + w.Sx_value - Sx * fa;
+    const Lanes ry = wide(sums.gradient_y) + w.Sy_value - Sy * fa;
     // (The pressure's slope is made by the inner steps, with the body force of the moment.)
     const Lanes gx = Lanes{Lv.xx, Lv.xx, 0, LT.xx} * rx + Lanes{Lv.xy, Lv.xy, 0, LT.xy} * ry;
     const Lanes gy = Lanes{Lv.yx, Lv.yx, 0, LT.yx} * rx + Lanes{Lv.yy, Lv.yy, 0, LT.yy} * ry;
-    store(slope_x[a], gx);
-    store(slope_y[a], gy);
-    const Lanes Ex{v.E.x, v.E.x, 0, T.E.x}, Ey{v.E.y, v.E.y, 0, T.E.y};
-    store_diffusion(a, scene.input, sums.laplacian - (w.K_value - K * fa) - Ex * gx - Ey * gy);
-    wall[a] = {Lv,
-               L[a] * w.N_n,
-               L[a] * w.N_acceleration,
-               Lv * w.velocity.S,
-               Lv.xx * w.Sx_value[0] + Lv.xy * w.Sy_value[0] + Lv.yx * w.Sx_value[1]
-                   + Lv.yy * w.Sy_value[1]};
-    shift[a] = shift_vector(m.gradient_of_concentration + w.C,
-                            push_off(s.contacts, scene.input.spacing),
+    store(slope_x[a], __builtin_convertvector(gx, Four));
+    store(slope_y[a], __builtin_convertvector(gy, Four));
+    const Lanes Ex = wide(Four{Ev[0], Ev[0], 0, ET[0]});
+    const Lanes Ey = wide(Four{Ev[1], Ev[1], 0, ET[1]});
+    const Lanes laplacian = wide(sums.laplacian) - (w.K_value - K * fa) - Ex * gx - Ey * gy;
+    store_diffusion(a, scene.input, __builtin_convertvector(laplacian, Four));
+    L[a] = narrow(work.pressure);
+    auto& terms = wall_[a / chunk_size];
+    wall_slot_[a] = static_cast<std::uint8_t>(terms.size());
+    terms.push_back({narrow(Lv),
+                     work.pressure * w.N_n,
+                     work.pressure * w.N_acceleration,
+                     Lv * w.velocity.S,
+                     Lv.xx * w.Sx_value[0] + Lv.xy * w.Sy_value[0] + Lv.yx * w.Sx_value[1]
+                         + Lv.yy * w.Sy_value[1]});
+    shift[a] = shift_vector(Vec2{weight_sum[a].x, weight_sum[a].y} + w.C,
+                            push_off(work.contacts, scene.input.spacing),
                             scene.input.shift_factor,
                             scene.input.spacing);
 }
@@ -250,16 +303,27 @@ bool Evaluation::run_chunk(std::size_t chunk,
                            const Particles& particles,
                            const Scene& scene) {
     static thread_local Scratch s;
+    s.column = -1; // another cloud may have been here
+    s.blocks = 0;
     samples[chunk].clear();
-    for (std::size_t a = first; a < last; ++a) {
-        if (!gather(a, particles, scene, s)) {
-            return false;
+    wall_[chunk].clear();
+    for (std::size_t start = first; start < last; start += s.work.size()) {
+        const std::size_t end = std::min(last, start + s.work.size());
+        s.operators.clear();
+        for (std::size_t a = start; a < end; ++a) {
+            if (!gather<Heat>(a, particles, scene, s, s.work[a - start])) {
+                return false;
+            }
         }
-        if (near_wall[a]) {
-            beside_walls<Heat>(a, particles, scene, s);
-            take_samples(a, scene.boundary, s.contacts, samples[chunk]);
-        } else {
-            interior(a, particles, scene, s);
+        s.operators.solve();
+        for (std::size_t a = start; a < end; ++a) {
+            const Work& work = s.work[a - start];
+            if (work.contacts.empty()) {
+                interior(a, particles, scene, s, work);
+            } else {
+                beside_walls(a, particles, scene, s, work);
+                take_samples(a, scene.boundary, work.contacts, samples[chunk]);
+            }
         }
     }
     return true;
@@ -283,12 +347,12 @@ void Evaluation::run(const Particles& particles,
         if (fits) {
             return;
         }
-        if (stride_ == most_neighbours) {
+        if (chunk_blocks_ == most_chunk_blocks) {
             throw Diverged("a fluid particle has more than " + std::to_string(most_neighbours)
                            + " neighbours: the cloud has collapsed; check that the solids leave "
                              "the fluid its room, or raise the sound speed");
         }
-        stride_ = most_neighbours; // once in a run at most
+        chunk_blocks_ = most_chunk_blocks; // once in a run at most
     }
 }
 

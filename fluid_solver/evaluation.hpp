@@ -10,19 +10,22 @@
 #include "fluid_solver/particles.hpp"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace duet::fluid {
 
-/// One neighbour as the inner steps need it: w = V gradW, F stands for V F.
-struct PairWeight {
-    float x, y, F;
-    std::uint32_t index;
+/// A 2 x 2 matrix, and a vector, as the inner steps read them.
+struct alignas(16) Correction {
+    float xx, xy, yx, yy;
+};
+struct WeightSum {
+    float x, y;
 };
 
 /// What the walls add to the inner step of a particle near them.
 struct WallTerms {
-    Mat2 L_velocity;       ///< gradient correction of the velocity
+    Correction L_velocity; ///< gradient correction of the velocity
     Mat2 L_N_n;            ///< times the body force: part of grad p / rho
     Vec2 L_N_acceleration; ///< its part that comes from the walls' acceleration
     Vec2 L_S;              ///< div v of the walls: value - v_a . L S
@@ -60,23 +63,32 @@ class Evaluation {
              const EvaluationInput& input);
 
     // By particle:
-    std::vector<Mat2> L;                  ///< gradient correction of the pressure
-    std::vector<Fields> slope_x, slope_y; ///< gradients of u, v, p, T
-    std::vector<Vec2> viscous;            ///< m/s2
-    std::vector<double> heating;          ///< K/s
-    std::vector<Vec2> shift;              ///< m
-    std::vector<WallTerms> wall;          ///< only where near_wall
-    std::vector<std::uint8_t> near_wall;
-    std::vector<std::uint8_t> near_heated; ///< within the support of a heated wall
-    std::vector<std::uint8_t> count;
+    std::vector<Correction> L;                    ///< gradient correction of the pressure
+    std::vector<Slope> slope_x, slope_y;          ///< gradients of u, v, p, T
+    std::vector<Vec2> viscous;                    ///< m/s2
+    std::vector<double> heating;                  ///< K/s
+    std::vector<Vec2> shift;                      ///< m
+    std::vector<WeightSum> weight_sum;            ///< sum w
+    std::vector<std::uint8_t> near_heated;        ///< within the support of a heated wall
+    std::vector<std::uint8_t> count;              ///< of neighbours
     std::vector<std::vector<WallSample>> samples; ///< by chunk
 
-    const PairWeight* pairs(std::size_t a) const { return &pairs_[a * stride_]; }
+    /// The neighbours of a, in eights.
+    std::span<const PairBlock> pairs(std::size_t a) const {
+        return {&pairs_[a / chunk_size * chunk_blocks_ + first_block_[a]],
+                (count[a] + eight - 1) / eight};
+    }
+    /// The terms of a particle near a wall; null away from walls.
+    const WallTerms* wall(std::size_t a) const {
+        const std::uint8_t slot = wall_slot_[a];
+        return slot == no_wall ? nullptr : &wall_[a / chunk_size][slot];
+    }
     const Kernel& kernel() const { return kernel_; }
     const Ghosts& ghosts() const { return ghosts_; }
     double sample_depth() const { return sample_depth_; }
 
   private:
+    struct Work;
     struct Scratch;
     struct Scene {
         const CellGrid& grid;
@@ -84,16 +96,25 @@ class Evaluation {
         const EvaluationInput& input;
     };
     void resize(std::size_t n);
-    bool gather(std::size_t a, const Particles& particles, const Scene& scene, Scratch& s);
-    void interior(std::size_t a, const Particles& particles, const Scene& scene, Scratch& s);
     template <bool Heat>
-    void beside_walls(std::size_t a, const Particles& particles, const Scene& scene, Scratch& s);
-    void store_diffusion(std::size_t a, const EvaluationInput& input, const Lanes& laplacian);
+    bool
+    gather(std::size_t a, const Particles& particles, const Scene& scene, Scratch& s, Work& work);
+    void interior(std::size_t a,
+                  const Particles& particles,
+                  const Scene& scene,
+                  const Scratch& s,
+                  const Work& work);
+    void beside_walls(std::size_t a,
+                      const Particles& particles,
+                      const Scene& scene,
+                      const Scratch& s,
+                      const Work& work);
+    void store_diffusion(std::size_t a, const EvaluationInput& input, const Four& laplacian);
     void take_samples(std::size_t a,
                       const Boundary& boundary,
                       const std::vector<Contact>& contacts,
                       std::vector<WallSample>& out) const;
-    /// Returns false if a particle has more neighbours than there is room for.
+    /// Returns false if particles have more neighbours than there is room for.
     template <bool Heat>
     bool run_chunk(std::size_t chunk,
                    std::size_t first,
@@ -101,12 +122,18 @@ class Evaluation {
                    const Particles& particles,
                    const Scene& scene);
 
+    static constexpr std::uint8_t no_wall = 255;
+    static_assert(chunk_size < no_wall);
+
     int threads_;
     Kernel kernel_;
     Ghosts ghosts_;
     double sample_depth_;
-    std::size_t stride_ = 32;
-    std::vector<PairWeight> pairs_;
+    std::size_t chunk_blocks_; ///< room for the pairs of a chunk
+    std::vector<PairBlock> pairs_;
+    std::vector<std::uint16_t> first_block_; ///< of a particle in its chunk
+    std::vector<std::uint8_t> wall_slot_;    ///< in its chunk
+    std::vector<std::vector<WallTerms>> wall_;
 };
 
 } // namespace duet::fluid

@@ -332,7 +332,7 @@ void Fluid::Implementation::correct_fields(double dt) {
     }
     for_particles(particles.size(), config.threads, [&](std::size_t a) {
         const Vec2 dr = evaluation_.shift[a];
-        const Fields &gx = evaluation_.slope_x[a], &gy = evaluation_.slope_y[a];
+        const Slope &gx = evaluation_.slope_x[a], &gy = evaluation_.slope_y[a];
         Fields& f = particles.fields[a];
         f.u += dr.x * gx.u + dr.y * gy.u;
         f.v += dr.x * gx.v + dr.y * gy.v;

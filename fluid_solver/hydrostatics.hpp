@@ -25,6 +25,8 @@ class Hydrostatics {
 
     std::vector<Level> levels; ///< by compartment
 
+    /// Change of the body force with the temperature, m/(s2 K).
+    Vec2 per_kelvin() const { return per_kelvin_; }
     /// The whole body force, m/s2.
     Vec2 force(double temperature) const { return (temperature - reference_) * per_kelvin_; }
     /// What is left of it beside the level's.

@@ -1,19 +1,30 @@
-// The four fields of a particle side by side: one AVX register of doubles. A pass over the
-// neighbours then loads one line of each and treats all fields at once.
+// Several numbers in one register. The compiler turns these types into whatever the processor has;
+// nothing here asks for a particular one.
 
 #pragma once
 
+#include <cstddef>
 #include <cstring>
 
 namespace duet::fluid {
 
-/// Velocity, pressure and temperature of one particle.
+/// Velocity, pressure and temperature of one particle side by side: one AVX register. A pass over
+/// the neighbours then loads one line of each and treats all fields at once.
 struct alignas(32) Fields {
     double u, v, p, T;
 };
 
-/// Four doubles that are added and multiplied lane by lane.
+/// The same four in single precision: slopes.
+struct alignas(16) Slope {
+    float u, v, p, T;
+};
+
+/// Four doubles, or floats, that are added and multiplied lane by lane.
 using Lanes = double __attribute__((vector_size(32)));
+using Four = float __attribute__((vector_size(16)));
+/// Eight neighbours, or particles, at a time.
+using Eight = float __attribute__((vector_size(32)));
+constexpr std::size_t eight = 8;
 
 inline Lanes load(const Fields& f) {
     Lanes r;
@@ -23,6 +34,59 @@ inline Lanes load(const Fields& f) {
 
 inline void store(Fields& f, const Lanes& r) {
     std::memcpy(&f, &r, sizeof r);
+}
+
+inline void store(Slope& f, const Four& r) {
+    std::memcpy(&f, &r, sizeof r);
+}
+
+inline Eight load_eight(const float* from) {
+    Eight r;
+    std::memcpy(&r, from, sizeof r);
+    return r;
+}
+
+inline void store(float* to, const Eight& r) {
+    std::memcpy(to, &r, sizeof r);
+}
+
+/// The sum over the lanes of each of eight registers.
+inline Eight lane_sums(const Eight& a,
+                       const Eight& b,
+                       const Eight& c,
+                       const Eight& d,
+                       const Eight& e,
+                       const Eight& f,
+                       const Eight& g,
+                       const Eight& h) {
+    // Lanes of two registers alternately, then of four, in each half of the register.
+    const auto two = [](const Eight& p, const Eight& q) {
+        return __builtin_shufflevector(p, q, 0, 8, 1, 9, 4, 12, 5, 13)
+               + __builtin_shufflevector(p, q, 2, 10, 3, 11, 6, 14, 7, 15);
+    };
+    const auto four = [](const Eight& p, const Eight& q) {
+        return __builtin_shufflevector(p, q, 0, 1, 8, 9, 4, 5, 12, 13)
+               + __builtin_shufflevector(p, q, 2, 3, 10, 11, 6, 7, 14, 15);
+    };
+    const Eight abcd = four(two(a, b), two(c, d)), efgh = four(two(e, f), two(g, h));
+    return __builtin_shufflevector(abcd, efgh, 0, 1, 2, 3, 8, 9, 10, 11)
+           + __builtin_shufflevector(abcd, efgh, 4, 5, 6, 7, 12, 13, 14, 15);
+}
+
+/// The same of three; the last lane repeats the third.
+inline Four lane_sums(const Eight& a, const Eight& b, const Eight& c) {
+    const auto fold = [](const Eight& v) {
+        return __builtin_shufflevector(v, v, 0, 1, 2, 3)
+               + __builtin_shufflevector(v, v, 4, 5, 6, 7);
+    };
+    const auto two = [](const Four& p, const Four& q) {
+        return __builtin_shufflevector(p, q, 0, 4, 1, 5)
+               + __builtin_shufflevector(p, q, 2, 6, 3, 7);
+    };
+    const Four folded = fold(c);
+    const Four ab = two(fold(a), fold(b)), cc = two(folded, folded);
+    return __builtin_shufflevector(ab, cc, 0, 1, 4, 5)
+           + __builtin_shufflevector(ab, cc, 2, 3, 6, 7);
 }
 
 } // namespace duet::fluid

@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include "fluid_solver/lanes.hpp"
 #include "fluid_solver/particles.hpp"
 #include "fluid_solver/vector.hpp"
 
@@ -14,134 +15,150 @@
 
 namespace duet::fluid {
 
-constexpr int most_neighbours = 64;
+constexpr std::size_t most_neighbours = 64;
 
-/// x = x_a - x_b, r2 = |x|^2 > 0 and the index of each neighbour b, in the order of the cells.
+/// x = x_a - x_b and the index of each neighbour b, in the order of the cells. The arrays are
+/// filled up to whole eights with entries at (pad, 0) and the index of the particle itself, which
+/// count for nothing if pad is the support.
 struct Neighbours {
-    int count = 0;
-    alignas(32) std::array<double, most_neighbours> x, y, r2;
-    std::array<std::uint32_t, most_neighbours> index;
+    std::size_t count = 0;
+    alignas(32) std::array<float, most_neighbours + eight> x, y;
+    alignas(32) std::array<std::uint32_t, most_neighbours + eight> index;
 
-    void drop(int k); ///< removes neighbour k, keeping the order of the others
-};
-
-namespace detail {
-
-/// Appends the particles of [first, last) that lie within the support but not at (xa, ya) itself.
-/// Each is written in any case and kept only if it counts: no branch to mispredict.
-inline void append(const Particles& particles,
-                   std::uint32_t first,
-                   std::uint32_t last,
-                   double xa,
-                   double ya,
-                   double support2,
-                   Neighbours& found) {
-    auto n = static_cast<std::size_t>(found.count);
-    for (std::uint32_t b = first; b < last && n < most_neighbours; ++b) {
-        const double x = xa - particles.x[b], y = ya - particles.y[b], r2 = x * x + y * y;
-        found.x[n] = x;
-        found.y[n] = y;
-        found.r2[n] = r2;
-        found.index[n] = b;
-        n += (r2 < support2) & (r2 > 0);
-    }
-    found.count = static_cast<int>(n);
-}
-
-#ifdef __AVX2__
-/// For each of the 16 patterns of kept lanes, the lanes in order, as pairs of 32-bit halves.
-struct Packing {
-    alignas(32) std::int32_t halves[16][8];
-    alignas(16) std::int32_t words[16][4];
-};
-constexpr Packing packing = [] {
-    Packing p{};
-    for (int pattern = 0; pattern < 16; ++pattern) {
-        int n = 0;
-        for (int lane = 0; lane < 4; ++lane) {
-            if (pattern >> lane & 1) {
-                p.halves[pattern][2 * n] = 2 * lane;
-                p.halves[pattern][2 * n + 1] = 2 * lane + 1;
-                p.words[pattern][n++] = lane;
-            }
+    /// Number of eights that hold the neighbours.
+    std::size_t eights() const { return (count + eight - 1) / eight; }
+    void pad(float place, std::uint32_t self) {
+        for (std::size_t k = count; k < count + eight; ++k) {
+            x[k] = place;
+            y[k] = 0;
+            index[k] = self;
         }
     }
-    return p;
-}();
-
-/// The same, four at a time. Writes up to three entries beyond the last.
-inline void append_packed(const Particles& particles,
-                          std::uint32_t first,
-                          std::uint32_t last,
-                          double xa,
-                          double ya,
-                          double support2,
-                          Neighbours& found) {
-    auto n = static_cast<std::size_t>(found.count);
-    const __m256d x4 = _mm256_set1_pd(xa), y4 = _mm256_set1_pd(ya);
-    const __m256d least = _mm256_setzero_pd(), most = _mm256_set1_pd(support2);
-    std::uint32_t b = first;
-    for (; b + 4 <= last && n + 4 <= most_neighbours; b += 4) {
-        const __m256d x = _mm256_sub_pd(x4, _mm256_loadu_pd(&particles.x[b]));
-        const __m256d y = _mm256_sub_pd(y4, _mm256_loadu_pd(&particles.y[b]));
-        const __m256d r2 = _mm256_add_pd(_mm256_mul_pd(x, x), _mm256_mul_pd(y, y));
-        const auto pattern = static_cast<unsigned>(_mm256_movemask_pd(_mm256_and_pd(
-            _mm256_cmp_pd(r2, most, _CMP_LT_OQ), _mm256_cmp_pd(r2, least, _CMP_GT_OQ))));
-        const __m256i order =
-            _mm256_load_si256(reinterpret_cast<const __m256i*>(packing.halves[pattern]));
-        const auto pack = [&](double* to, __m256d values) {
-            _mm256_storeu_pd(to,
-                             _mm256_castsi256_pd(
-                                 _mm256_permutevar8x32_epi32(_mm256_castpd_si256(values), order)));
-        };
-        pack(&found.x[n], x);
-        pack(&found.y[n], y);
-        pack(&found.r2[n], r2);
-        const __m128i lanes =
-            _mm_load_si128(reinterpret_cast<const __m128i*>(packing.words[pattern]));
-        _mm_storeu_si128(reinterpret_cast<__m128i*>(&found.index[n]),
-                         _mm_add_epi32(_mm_set1_epi32(static_cast<int>(b)), lanes));
-        n += static_cast<unsigned>(std::popcount(pattern));
+    /// Keeps the neighbours for which keep(k) holds, in their order.
+    template <class Keep>
+    void filter(const Keep& keep) {
+        std::size_t kept = 0;
+        for (std::size_t k = 0; k < count; ++k) {
+            x[kept] = x[k];
+            y[kept] = y[k];
+            index[kept] = index[k];
+            kept += keep(k) ? 1 : 0;
+        }
+        count = kept;
     }
-    found.count = static_cast<int>(n);
-    append(particles, b, last, xa, ya, support2, found);
-}
-#endif
+};
 
-} // namespace detail
+/// The particles of one cell and the eight about it: what any particle of that cell may have as
+/// neighbours. Places are relative to the middle of the cell, so that single precision holds their
+/// differences to 2e-7 of the support.
+class Surroundings {
+  public:
+    /// Returns false if there are more than any sane cloud has.
+    bool collect(const Particles& particles, const CellGrid& grid, int column, int row) {
+        centre_ = grid.centre(column, row);
+        const auto& start = particles.cell_start();
+        std::size_t n = 0;
+        for (int r = row - 1; r <= row + 1; ++r) {
+            const std::size_t first = start[grid.index(column - 1, r)];
+            const std::size_t last = start[grid.index(column + 2, r)];
+            if (n + (last - first) > most) {
+                return false;
+            }
+            for (std::size_t b = first; b < last; ++b, ++n) {
+                x_[n] = static_cast<float>(particles.x[b] - centre_.x);
+                y_[n] = static_cast<float>(particles.y[b] - centre_.y);
+                index_[n] = static_cast<std::uint32_t>(b);
+            }
+        }
+        count_ = n;
+        // Whole eights are searched: what fills them up lies out of reach.
+        for (std::size_t k = n; k < n + eight; ++k) {
+            x_[k] = y_[k] = std::numeric_limits<float>::max();
+            index_[k] = 0;
+        }
+        return true;
+    }
 
-/// Finds all particles closer to `a` than `support`, at most the cell size of the grid that the
-/// particles were sorted by; one at the very same place as `a` has no direction and is left out.
-/// Returns false if there are `most_neighbours` or more.
-inline bool find_neighbours(const Particles& particles,
-                            const CellGrid& grid,
-                            double support,
-                            std::size_t a,
-                            Neighbours& found) {
-    const double xa = particles.x[a], ya = particles.y[a];
-    const int column = grid.column(xa), row = grid.row(ya);
-    const auto& start = particles.cell_start();
-    found.count = 0;
-    for (int r = row - 1; r <= row + 1; ++r) {
-        const std::uint32_t first = start[grid.index(column - 1, r)];
-        const std::uint32_t last = start[grid.index(column + 2, r)];
+    /// Finds all particles closer to `place` than `support`, at most the cell size; one at the very
+    /// same place has no direction and is left out. Returns false if there are more than there is
+    /// room for.
+    bool find(Vec2 place, float support, Neighbours& found) const {
 #ifdef __AVX2__
-        detail::append_packed(particles, first, last, xa, ya, support * support, found);
+        return find_packed(place, support, found);
 #else
-        detail::append(particles, first, last, xa, ya, support * support, found);
+        return find_plainly(place, support, found);
 #endif
     }
-    return found.count < most_neighbours;
-}
 
-inline void Neighbours::drop(int k) {
-    --count;
-    for (auto i = static_cast<std::size_t>(k); i < static_cast<std::size_t>(count); ++i) {
-        x[i] = x[i + 1];
-        y[i] = y[i + 1];
-        r2[i] = r2[i + 1];
-        index[i] = index[i + 1];
+    /// Each candidate is written in any case and kept only if it counts: no branch to mispredict.
+    bool find_plainly(Vec2 place, float support, Neighbours& found) const {
+        const auto xa = static_cast<float>(place.x - centre_.x);
+        const auto ya = static_cast<float>(place.y - centre_.y);
+        const float support2 = support * support;
+        std::size_t n = 0;
+        for (std::size_t k = 0; k < count_ && n < most_neighbours; ++k) {
+            const float x = xa - x_[k], y = ya - y_[k], r2 = x * x + y * y;
+            found.x[n] = x;
+            found.y[n] = y;
+            found.index[n] = index_[k];
+            n += (r2 < support2) & (r2 > 0) ? 1 : 0;
+        }
+        found.count = n;
+        return n < most_neighbours;
     }
-}
+
+#ifdef __AVX2__
+    /// The same, eight at a time.
+    bool find_packed(Vec2 place, float support, Neighbours& found) const {
+        const __m256 xa = _mm256_set1_ps(static_cast<float>(place.x - centre_.x));
+        const __m256 ya = _mm256_set1_ps(static_cast<float>(place.y - centre_.y));
+        const __m256 least = _mm256_setzero_ps(), support2 = _mm256_set1_ps(support * support);
+        std::size_t n = 0;
+        for (std::size_t k = 0; k < count_ && n < most_neighbours; k += eight) {
+            const __m256 x = _mm256_sub_ps(xa, _mm256_load_ps(&x_[k]));
+            const __m256 y = _mm256_sub_ps(ya, _mm256_load_ps(&y_[k]));
+            const __m256 r2 = _mm256_add_ps(_mm256_mul_ps(x, x), _mm256_mul_ps(y, y));
+            const auto pattern = static_cast<unsigned>(_mm256_movemask_ps(_mm256_and_ps(
+                _mm256_cmp_ps(r2, support2, _CMP_LT_OQ), _mm256_cmp_ps(r2, least, _CMP_GT_OQ))));
+            const __m256i order = _mm256_cvtepu8_epi32(
+                _mm_cvtsi64_si128(static_cast<std::int64_t>(kept_lanes[pattern])));
+            _mm256_storeu_ps(&found.x[n], _mm256_permutevar8x32_ps(x, order));
+            _mm256_storeu_ps(&found.y[n], _mm256_permutevar8x32_ps(y, order));
+            _mm256_storeu_si256(
+                reinterpret_cast<__m256i*>(&found.index[n]),
+                _mm256_permutevar8x32_epi32(
+                    _mm256_load_si256(reinterpret_cast<const __m256i*>(&index_[k])), order));
+            n += static_cast<unsigned>(std::popcount(pattern));
+        }
+        found.count = n;
+        return n < most_neighbours;
+    }
+#endif
+
+  private:
+    /// Three times the density of a sane cloud.
+    static constexpr std::size_t most = 192;
+
+#ifdef __AVX2__
+    /// For each of the 256 patterns of kept lanes, the lanes in order, a byte each.
+    static constexpr std::array<std::uint64_t, 256> kept_lanes = [] {
+        std::array<std::uint64_t, 256> lanes{};
+        for (unsigned pattern = 0; pattern < 256; ++pattern) {
+            unsigned n = 0;
+            for (std::uint64_t lane = 0; lane < 8; ++lane) {
+                if (pattern >> lane & 1) {
+                    lanes[pattern] |= lane << (8 * n++);
+                }
+            }
+        }
+        return lanes;
+    }();
+#endif
+
+    Vec2 centre_;
+    std::size_t count_ = 0;
+    alignas(32) std::array<float, most + eight> x_, y_;
+    alignas(32) std::array<std::uint32_t, most + eight> index_;
+};
 
 } // namespace duet::fluid

@@ -1,148 +1,173 @@
 #include "fluid_solver/operators.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace duet::fluid {
 
-void weigh(const Kernel& kernel, double volume, const Neighbours& neighbours, Weights& weights) {
-    for (int i = 0; i < neighbours.count; ++i) {
-        const auto k = static_cast<std::size_t>(i);
-        const double F = volume * kernel.slope_over_r(std::sqrt(neighbours.r2[k]));
-        weights.F_float[k] = static_cast<float>(F);
-        weights.x_float[k] = static_cast<float>(F * neighbours.x[k]);
-        weights.y_float[k] = static_cast<float>(F * neighbours.y[k]);
-        weights.F[k] = weights.F_float[k];
-        weights.x[k] = weights.x_float[k];
-        weights.y[k] = weights.y_float[k];
+Moments weigh(const Kernel& kernel,
+              float volume,
+              const Neighbours& near,
+              PairBlock* pairs,
+              DirectionWeights& directions) {
+    const auto inverse = static_cast<float>(1 / kernel.support());
+    const float scale = volume * static_cast<float>(kernel.slope_over_r(0));
+    Eight wx{}, wy{}, wxx{}, wxy{}, wyy{}, xxx{}, xxy{}, xyy{}, yyy{};
+    Eight sxxx{}, sxxy{}, qxxxx{}, qxxxy{};
+    for (std::size_t block = 0; block < near.eights(); ++block) {
+        const float *x_at = &near.x[block * eight], *y_at = &near.y[block * eight];
+        alignas(32) float F_of[eight], per_r2[eight];
+#pragma omp simd
+        for (std::size_t k = 0; k < eight; ++k) {
+            const float r2 = x_at[k] * x_at[k] + y_at[k] * y_at[k];
+            const float s = 1 - std::sqrt(r2) * inverse;
+            F_of[k] = s > 0 ? scale * s * s * s : 0;
+            per_r2[k] = 1 / r2;
+        }
+        const Eight x = load_eight(x_at), y = load_eight(y_at), F = load_eight(F_of);
+        const Eight Fx = F * x, Fy = F * y;
+        PairBlock& out = pairs[block];
+        store(out.x, Fx);
+        store(out.y, Fy);
+        store(out.F, F);
+        std::memcpy(out.index, &near.index[block * eight], sizeof out.index);
+        const Eight xx = x * x, xy = x * y;
+        const Eight Fxx = Fx * x, Fxy = Fx * y, Fyy = Fy * y;
+        const Eight ratio = load_eight(per_r2);
+        const Eight Gxx = Fxx * ratio, Gxy = Fxy * ratio, Gyy = Fyy * ratio;
+        store(&directions.xx[block * eight], 2 * Gxx);
+        store(&directions.xy[block * eight], 4 * Gxy);
+        store(&directions.yy[block * eight], 2 * Gyy);
+        wx += Fx;
+        wy += Fy;
+        wxx += Fxx;
+        wxy += Fxy;
+        wyy += Fyy;
+        xxx += Fxx * x;
+        xxy += Fxx * y;
+        xyy += Fxy * y;
+        yyy += Fyy * y;
+        sxxx += Gxx * x;
+        sxxy += Gxx * y;
+        qxxxx += Gxx * xx;
+        qxxxy += Gxx * xy;
     }
-}
-
-Moments moments(const Neighbours& neighbours, const Weights& weights) {
     Moments m;
-    double wxx = 0, wxy = 0, wyx = 0, wyy = 0, wx = 0, wy = 0;
-    double xxx = 0, xxy = 0, xyy = 0, yyy = 0, sxxx = 0, sxxy = 0, sxyy = 0, syyy = 0;
-    double qxxxx = 0, qxxxy = 0, qxxyy = 0, qxyyy = 0, qyyyy = 0;
-#pragma omp simd reduction(+ : wxx, wxy, wyx, wyy, wx, wy, xxx, xxy, xyy, yyy, sxxx, sxxy, sxyy,   \
-                               syyy, qxxxx, qxxxy, qxxyy, qxyyy, qyyyy)
-    for (int i = 0; i < neighbours.count; ++i) {
-        const auto k = static_cast<std::size_t>(i);
-        const double x = neighbours.x[k], y = neighbours.y[k], F = weights.F[k];
-        const double G = F / neighbours.r2[k];
-        const double xx = x * x, xy = x * y, yy = y * y;
-        wx += weights.x[k];
-        wy += weights.y[k];
-        wxx += weights.x[k] * x;
-        wxy += weights.x[k] * y;
-        wyx += weights.y[k] * x;
-        wyy += weights.y[k] * y;
-        xxx += F * x * xx;
-        xxy += F * x * xy;
-        xyy += F * x * yy;
-        yyy += F * y * yy;
-        sxxx += G * x * xx;
-        sxxy += G * x * xy;
-        sxyy += G * x * yy;
-        syyy += G * y * yy;
-        qxxxx += G * xx * xx;
-        qxxxy += G * xx * xy;
-        qxxyy += G * xx * yy;
-        qxyyy += G * xy * yy;
-        qyyyy += G * yy * yy;
-    }
-    m.gradient_of_concentration = {wx, wy};
-    m.w_x = {wxx, wxy, wyx, wyy};
-    m.xxx = xxx, m.xxy = xxy, m.xyy = xyy, m.yyy = yyy;
-    m.sxxx = sxxx, m.sxxy = sxxy, m.sxyy = sxyy, m.syyy = syyy;
-    m.qxxxx = qxxxx, m.qxxxy = qxxxy, m.qxxyy = qxxyy, m.qxyyy = qxyyy, m.qyyyy = qyyyy;
+    alignas(32) float sums[2 * eight];
+    store(sums, lane_sums(wx, wy, wxx, wxy, wyy, xxx, xxy, xyy));
+    store(sums + eight, lane_sums(yyy, sxxx, sxxy, qxxxx, qxxxy, Eight{}, Eight{}, Eight{}));
+    std::memcpy(&m, sums, sizeof m);
     return m;
 }
 
 Mat2 correction(const Moments& m, const Mat2& walls) {
-    return inverse(
-        {walls.xx - m.w_x.xx, walls.xy - m.w_x.xy, walls.yx - m.w_x.yx, walls.yy - m.w_x.yy});
+    return inverse({walls.xx - static_cast<double>(m.wxx),
+                    walls.xy - static_cast<double>(m.wxy),
+                    walls.yx - static_cast<double>(m.wxy),
+                    walls.yy - static_cast<double>(m.wyy)});
 }
 
-Third gradient_error(const Moments& m, const Mat2& L, const Third& walls) {
-    const Symmetric x{m.xxx + walls[0][0], m.xxy + walls[0][1], m.xyy + walls[0][2]};
-    const Symmetric y{m.xxy + walls[1][0], m.xyy + walls[1][1], m.yyy + walls[1][2]};
-    Third A{};
-    for (std::size_t jk = 0; jk < 3; ++jk) {
-        A[0][jk] = L.xx * x[jk] + L.xy * y[jk];
-        A[1][jk] = L.yx * x[jk] + L.yy * y[jk];
+void OperatorBatch::add(const Moments& m,
+                        const Mat2& M,
+                        const Third& third,
+                        const DirichletSums& walls) {
+    const std::size_t i = size_++;
+    float values[13];
+    static_assert(sizeof values == sizeof m);
+    std::memcpy(values, &m, sizeof m);
+    for (std::size_t k = 0; k < 13; ++k) {
+        moments_[k][i] = values[k];
     }
-    return A;
+    const auto put = [&](auto& columns, std::initializer_list<double> wall_values) {
+        std::size_t k = 0;
+        for (const double value : wall_values) {
+            columns[k++][i] = static_cast<float>(value);
+        }
+    };
+    put(M_, {M.xx, M.xy, M.yx, M.yy});
+    put(third_, {third[0][0], third[0][1], third[0][2], third[1][0], third[1][1], third[1][2]});
+    put(K_, {walls.K_xi.x, walls.K_xi.y, walls.K_xi_xi[0], walls.K_xi_xi[1], walls.K_xi_xi[2]});
 }
 
 namespace {
 
-double determinant3(const std::array<Symmetric, 3>& c) {
-    return c[0][0] * (c[1][1] * c[2][2] - c[2][1] * c[1][2])
-           - c[1][0] * (c[0][1] * c[2][2] - c[2][1] * c[0][2])
-           + c[2][0] * (c[0][1] * c[1][2] - c[1][1] * c[0][2]);
-}
-
-/// Solves sum_m columns[m] b_m = right by Cramer's rule.
-Symmetric solve3(const std::array<Symmetric, 3>& columns, const Symmetric& right) {
-    const double d = 1 / determinant3(columns);
-    return {d * determinant3({right, columns[1], columns[2]}),
-            d * determinant3({columns[0], right, columns[2]}),
-            d * determinant3({columns[0], columns[1], right})};
-}
-
 /// Bounds of B's eigenvalues. Beside an adiabatic wall half of the support is empty and B reaches 4
 /// across the wall in a sound cloud; pulling that back would cost the order.
-constexpr double least_eigenvalue = 0.2, largest_eigenvalue = 6;
+constexpr float least_eigenvalue = 0.2F, largest_eigenvalue = 6;
 
-/// The largest theta <= 1 for which I + theta (B - I) keeps within these bounds.
-double admissible_part(const Symmetric& B) {
-    const double mean = 0.5 * (B[0] + B[2]);
-    const double half = 0.5 * (B[0] - B[2]);
-    const double radius = std::sqrt(half * half + B[1] * B[1]);
-    const double low = mean - radius, high = mean + radius;
-    if (!std::isfinite(radius + mean)) {
-        return 0;
-    }
-    double theta = 1;
-    if (low < least_eigenvalue) {
-        theta = std::min(theta, (1 - least_eigenvalue) / (1 - low));
-    }
-    if (high > largest_eigenvalue) {
-        theta = std::min(theta, (largest_eigenvalue - 1) / (high - 1));
-    }
-    return theta;
+/// The largest theta <= 1 for which I + theta (B - I) keeps within these bounds; 0 if B is none.
+inline float admissible_part(float Bxx, float Bxy, float Byy) {
+    const float mean = 0.5F * (Bxx + Byy), half = 0.5F * (Bxx - Byy);
+    const float radius = std::sqrt(half * half + Bxy * Bxy);
+    const float low = mean - radius, high = mean + radius;
+    const float from_low = low < least_eigenvalue ? (1 - least_eigenvalue) / (1 - low) : 1;
+    const float from_high = high > largest_eigenvalue ? (largest_eigenvalue - 1) / (high - 1) : 1;
+    const float theta = from_low < from_high ? from_low : from_high;
+    return mean + radius < 1e30F ? theta : 0; // false for NaN
 }
 
 } // namespace
 
-LaplacianTensor laplacian_tensor(const Moments& m, const Third& A, const DirichletSums& walls) {
-    // Column mn, row jk: -q_mnjk - s_mni A_ijk; the column of B_xy counts twice (B is symmetric).
-    const auto column = [&](double factor, const Symmetric& q, double sx, double sy) {
-        Symmetric c{};
-        for (std::size_t jk = 0; jk < 3; ++jk) {
-            c[jk] = -factor * (q[jk] + sx * A[0][jk] + sy * A[1][jk]);
-        }
-        return c;
-    };
-    const std::array<Symmetric, 3> columns{column(1, {m.qxxxx, m.qxxxy, m.qxxyy}, m.sxxx, m.sxxy),
-                                           column(2, {m.qxxxy, m.qxxyy, m.qxyyy}, m.sxxy, m.sxyy),
-                                           column(1, {m.qxxyy, m.qxyyy, m.qyyyy}, m.sxyy, m.syyy)};
-    Symmetric right{1, 0, 1};
-    for (std::size_t jk = 0; jk < 3; ++jk) {
-        right[jk] +=
-            0.5 * walls.K_xi_xi[jk] - 0.5 * (walls.K_xi.x * A[0][jk] + walls.K_xi.y * A[1][jk]);
+/// With A_ijk = L_il [ sum V F x_l x_j x_k + walls_ljk ], twice the corrected gradient's error for
+/// the second derivatives H_jk, the three equations for B (jk = xx, xy, yy) are
+///     sum_mn B_mn [-q_mnjk - s_mni A_ijk] = delta_jk + (K xi_j xi_k - K xi_i A_ijk)/2.
+/// Column mn of the matrix; that of B_xy counts twice, because B is symmetric. By Cramer's rule.
+void OperatorBatch::solve() {
+    const auto& [wx, wy, wxx, wxy, wyy, xxx, xxy, xyy, yyy, sxxx, sxxy, qxxxx, qxxxy] = moments_;
+    const std::size_t whole = (size_ + eight - 1) / eight * eight; // what fills it up is not read
+#pragma omp simd
+    for (std::size_t i = 0; i < whole; ++i) {
+        // L = M^-1
+        const float Mxx = M_[0][i] - wxx[i], Mxy = M_[1][i] - wxy[i];
+        const float Myx = M_[2][i] - wxy[i], Myy = M_[3][i] - wyy[i];
+        const float d = 1 / (Mxx * Myy - Mxy * Myx);
+        const float Lxx = d * Myy, Lxy = -d * Mxy, Lyx = -d * Myx, Lyy = d * Mxx;
+        // A, by i and jk
+        const float x0 = xxx[i] + third_[0][i], x1 = xxy[i] + third_[1][i],
+                    x2 = xyy[i] + third_[2][i];
+        const float y0 = xxy[i] + third_[3][i], y1 = xyy[i] + third_[4][i],
+                    y2 = yyy[i] + third_[5][i];
+        const float Ax0 = Lxx * x0 + Lxy * y0, Ay0 = Lyx * x0 + Lyy * y0;
+        const float Ax1 = Lxx * x1 + Lxy * y1, Ay1 = Lyx * x1 + Lyy * y1;
+        const float Ax2 = Lxx * x2 + Lxy * y2, Ay2 = Lyx * x2 + Lyy * y2;
+        // s and q; traces: s_xxi + s_yyi = sum w_i, q_xxjk + q_yyjk = sum w_j x_k
+        const float s0 = sxxx[i], s1 = sxxy[i], s2 = wx[i] - sxxx[i], s3 = wy[i] - sxxy[i];
+        const float q0 = qxxxx[i], q1 = qxxxy[i], q2 = wxx[i] - q0, q3 = wxy[i] - q1,
+                    q4 = wyy[i] - q2;
+        const float a0 = -(q0 + s0 * Ax0 + s1 * Ay0), a1 = -(q1 + s0 * Ax1 + s1 * Ay1),
+                    a2 = -(q2 + s0 * Ax2 + s1 * Ay2);
+        const float b0 = -2 * (q1 + s1 * Ax0 + s2 * Ay0), b1 = -2 * (q2 + s1 * Ax1 + s2 * Ay1),
+                    b2 = -2 * (q3 + s1 * Ax2 + s2 * Ay2);
+        const float c0 = -(q2 + s2 * Ax0 + s3 * Ay0), c1 = -(q3 + s2 * Ax1 + s3 * Ay1),
+                    c2 = -(q4 + s2 * Ax2 + s3 * Ay2);
+        const float Kx = K_[0][i], Ky = K_[1][i];
+        const float r0 = 1 + 0.5F * (K_[2][i] - Kx * Ax0 - Ky * Ay0),
+                    r1 = 0.5F * (K_[3][i] - Kx * Ax1 - Ky * Ay1),
+                    r2 = 1 + 0.5F * (K_[4][i] - Kx * Ax2 - Ky * Ay2);
+        // Cofactors: b x c, c x a, a x b
+        const float u0 = b1 * c2 - b2 * c1, u1 = b2 * c0 - b0 * c2, u2 = b0 * c1 - b1 * c0;
+        const float v0 = c1 * a2 - c2 * a1, v1 = c2 * a0 - c0 * a2, v2 = c0 * a1 - c1 * a0;
+        const float w0 = a1 * b2 - a2 * b1, w1 = a2 * b0 - a0 * b2, w2 = a0 * b1 - a1 * b0;
+        const float e = 1 / (a0 * u0 + a1 * u1 + a2 * u2);
+        const float Bxx = e * (r0 * u0 + r1 * u1 + r2 * u2);
+        const float Bxy = e * (r0 * v0 + r1 * v1 + r2 * v2);
+        const float Byy = e * (r0 * w0 + r1 * w1 + r2 * w2);
+        const float theta = admissible_part(Bxx, Bxy, Byy);
+        const bool sound = theta > 0; // else B may be no number at all
+        const float Txx = sound ? 1 + theta * (Bxx - 1) : 1;
+        const float Txy = sound ? theta * Bxy : 0;
+        const float Tyy = sound ? 1 + theta * (Byy - 1) : 1;
+        // E = sum 2 V F (e.B e) x - sum K xi
+        E_[0][i] = 2 * (Txx * s0 + 2 * Txy * s1 + Tyy * s2) - Kx;
+        E_[1][i] = 2 * (Txx * s1 + 2 * Txy * s2 + Tyy * s3) - Ky;
+        B_[0][i] = Txx;
+        B_[1][i] = Txy;
+        B_[2][i] = Tyy;
+        L_[0][i] = Lxx;
+        L_[1][i] = Lxy;
+        L_[2][i] = Lyx;
+        L_[3][i] = Lyy;
+        theta_[i] = theta;
     }
-    LaplacianTensor t;
-    const Symmetric B = solve3(columns, right);
-    const double theta = admissible_part(B);
-    if (theta > 0) {
-        t.B = {1 + theta * (B[0] - 1), theta * B[1], 1 + theta * (B[2] - 1)};
-    }
-    t.limited = theta < 1;
-    // E = sum 2 V F (e.B e) x - sum K xi
-    t.E = {2 * (t.B[0] * m.sxxx + 2 * t.B[1] * m.sxxy + t.B[2] * m.sxyy) - walls.K_xi.x,
-           2 * (t.B[0] * m.sxxy + 2 * t.B[1] * m.sxyy + t.B[2] * m.syyy) - walls.K_xi.y};
-    return t;
 }
 
 } // namespace duet::fluid

@@ -112,10 +112,11 @@ void Fluid::Implementation::find_compartments() {
         return i;
     };
     for (std::size_t a = 0; a < n; ++a) {
-        for (std::size_t k = 0; k < evaluation_.count[a]; ++k) {
-            const std::uint32_t p = root(static_cast<std::uint32_t>(a));
-            const std::uint32_t q = root(evaluation_.pairs(a)[k].index);
-            parent[std::max(p, q)] = std::min(p, q);
+        for (const PairBlock& block : evaluation_.pairs(a)) {
+            for (const std::uint32_t b : block.index) {
+                const std::uint32_t p = root(static_cast<std::uint32_t>(a)), q = root(b);
+                parent[std::max(p, q)] = std::min(p, q);
+            }
         }
     }
     std::vector<std::uint32_t> roots;

@@ -4,94 +4,111 @@ namespace duet::fluid {
 
 namespace {
 
-using Pair = double __attribute__((vector_size(16)));
-using Quad = double __attribute__((vector_size(32)));
-
-constexpr double diffusion = 0.1; ///< delta of the pressure's diffusion
+constexpr float diffusion = 0.1F; ///< delta of the pressure's diffusion
 
 } // namespace
 
 /// grad p_a = L [ sum w (p_b - p_a) + sum_k N_k rho (b_a - a_wall).n_k ],
-/// dv/dt = -grad p / rho + viscous + b.
+/// dv/dt = -grad p / rho + viscous + b; and sum V F (p_a - p_b) for compress().
 template <bool Buoyancy>
 void Pressure::accelerate(const Particles& particles,
                           const Evaluation& evaluation,
                           const InnerSteps& inner,
                           double time,
                           std::size_t a) {
-    const PairWeight* pair = evaluation.pairs(a);
-    const double pa = p_[a];
-    double rx = 0, ry = 0;
-    for (std::size_t k = 0; k < evaluation.count[a]; ++k) {
-        const double difference = p_[pair[k].index] - pa;
-        rx += static_cast<double>(pair[k].x) * difference;
-        ry += static_cast<double>(pair[k].y) * difference;
+    const float pa = p_[a];
+    Eight sx{}, sy{}, sF{};
+    for (const PairBlock& block : evaluation.pairs(a)) {
+        const std::uint32_t* b = block.index;
+        const Eight difference =
+            Eight{p_[b[0]], p_[b[1]], p_[b[2]], p_[b[3]], p_[b[4]], p_[b[5]], p_[b[6]], p_[b[7]]}
+            - pa;
+        sx += load_eight(block.x) * difference;
+        sy += load_eight(block.y) * difference;
+        sF -= load_eight(block.F) * difference;
     }
-    Vec2 b;
-    if constexpr (Buoyancy) {
-        const double T = particles.fields[a].T + time * evaluation.heating[a];
-        b = inner.hydrostatics->departure(T, particles.compartment[a]);
+    const Four sums = lane_sums(sx, sy, sF);
+    const Correction& L = evaluation.L[a];
+    float px = L.xx * sums[0] + L.xy * sums[1], py = L.yx * sums[0] + L.yy * sums[1];
+    curvature_[a] = sums[2];
+    const Drive& drive = drive_[a];
+    const auto elapsed = static_cast<float>(time), step = static_cast<float>(inner.step);
+    if (const WallTerms* wall = evaluation.wall(a)) {
+        Vec2 b;
+        if constexpr (Buoyancy) {
+            const double T = particles.fields[a].T + time * evaluation.heating[a];
+            b = inner.hydrostatics->departure(T, particles.compartment[a]);
+        }
+        const Vec2 known = inner.density * (wall->L_N_n * b - wall->L_N_acceleration);
+        px += static_cast<float>(known.x);
+        py += static_cast<float>(known.y);
     }
-    Vec2 gradient = evaluation.L[a] * Vec2{rx, ry};
-    if (evaluation.near_wall[a]) {
-        const WallTerms& wall = evaluation.wall[a];
-        gradient += inner.density * (wall.L_N_n * b - wall.L_N_acceleration);
-    }
-    const Vec2 dv = inner.step * (evaluation.viscous[a] + b - (1 / inner.density) * gradient);
+    const auto specific_volume = static_cast<float>(1 / inner.density);
     Flow& flow = flow_[a];
-    flow.u += dv.x;
-    flow.v += dv.y;
-    flow.px = gradient.x;
-    flow.py = gradient.y;
+    flow.u += step * (drive.x + elapsed * drive.rate_x - specific_volume * px);
+    flow.v += step * (drive.y + elapsed * drive.rate_y - specific_volume * py);
+    flow.px = px;
+    flow.py = py;
 }
 
 /// dp/dt = -rho c^2 div v + v.grad p + delta h c psi,
 /// psi = sum 2 V F [ (p_a - p_b) - (grad p_a + grad p_b).x_ab / 2 ].
 void Pressure::compress(const Evaluation& evaluation, const InnerSteps& inner, std::size_t a) {
-    const PairWeight* pair = evaluation.pairs(a);
     const Flow& own = flow_[a];
-    const Quad mine{own.u, own.v, own.px, own.py};
-    const double pa = p_[a];
-    Quad straight{}; // sum w_x du, w_y dv, w_x dp_x, w_y dp_y
-    Pair across{};   // sum w_y du, w_x dv
-    Pair w_sum{};
-    double curvature = 0; // sum V F (p_a - p_b)
-    for (std::size_t k = 0; k < evaluation.count[a]; ++k) {
-        const Flow& other = flow_[pair[k].index];
-        const double wx = pair[k].x, wy = pair[k].y;
-        const Quad difference = Quad{other.u, other.v, other.px, other.py} - mine;
-        straight += Quad{wx, wy, wx, wy} * difference;
-        across += Pair{wy, wx} * Pair{difference[0], difference[1]};
-        w_sum += Pair{wx, wy};
-        curvature += static_cast<double>(pair[k].F) * (pa - p_[pair[k].index]);
+    const auto load = [](const Flow& flow) {
+        Four r;
+        std::memcpy(&r, &flow, sizeof r);
+        return r;
+    };
+    const Four mine = load(own);
+    Four sx{}, sy{}; // sum w_x, w_y times the differences of u, v, p_x, p_y
+    for (const PairBlock& block : evaluation.pairs(a)) {
+        for (std::size_t k = 0; k < eight; ++k) {
+            const Four difference = load(flow_[block.index[k]]) - mine;
+            sx += block.x[k] * difference;
+            sy += block.y[k] * difference;
+        }
     }
-    const bool walled = evaluation.near_wall[a];
-    const Mat2& L = walled ? evaluation.wall[a].L_velocity : evaluation.L[a];
-    double divergence =
-        L.xx * straight[0] + L.xy * across[0] + L.yx * across[1] + L.yy * straight[1];
-    if (walled) {
-        const WallTerms& wall = evaluation.wall[a];
-        divergence += wall.value - (own.u * wall.L_S.x + own.v * wall.L_S.y);
+    float divergence = 0;
+    if (const WallTerms* wall = evaluation.wall(a)) {
+        const Correction& L = wall->L_velocity;
+        divergence = L.xx * sx[0] + L.xy * sy[0] + L.yx * sx[1] + L.yy * sy[1]
+                     + static_cast<float>(wall->value - own.u * wall->L_S.x - own.v * wall->L_S.y);
+    } else {
+        const Correction& L = evaluation.L[a];
+        divergence = L.xx * sx[0] + L.xy * sy[0] + L.yx * sx[1] + L.yy * sy[1];
     }
-    const double psi =
-        2 * curvature - (straight[2] + straight[3]) - 2 * (w_sum[0] * own.px + w_sum[1] * own.py);
-    const double c = inner.sound_speed;
-    next_p_[a] = pa
-                 + inner.step
-                       * (-inner.density * c * c * divergence + own.u * own.px + own.v * own.py
-                          + diffusion * inner.smoothing_length * c * psi);
+    const WeightSum& w = evaluation.weight_sum[a];
+    const float psi = 2 * curvature_[a] - (sx[2] + sy[3]) - 2 * (w.x * own.px + w.y * own.py);
+    const auto c = static_cast<float>(inner.sound_speed);
+    const auto stiffness = static_cast<float>(inner.density) * c * c;
+    const auto h = static_cast<float>(inner.smoothing_length);
+    next_p_[a] = p_[a]
+                 + static_cast<float>(inner.step)
+                       * (-stiffness * divergence + own.u * own.px + own.v * own.py
+                          + diffusion * h * c * psi);
 }
 
 template <bool Buoyancy>
 void Pressure::run(Particles& particles, Evaluation& evaluation, const InnerSteps& inner) {
     const std::size_t n = particles.size();
     flow_.resize(n);
+    drive_.resize(n);
     p_.resize(n);
     next_p_.resize(n);
+    curvature_.resize(n);
+    const auto narrow = [](double value) { return static_cast<float>(value); };
     for_particles(n, threads_, [&](std::size_t a) {
         const Fields& f = particles.fields[a];
-        flow_[a] = {f.u, f.v, 0, 0};
-        p_[a] = f.p;
+        flow_[a] = {narrow(f.u), narrow(f.v), 0, 0};
+        p_[a] = narrow(f.p);
+        Vec2 force = evaluation.viscous[a], rate;
+        if constexpr (Buoyancy) {
+            const std::uint16_t compartment = particles.compartment[a];
+            force += inner.hydrostatics->departure(f.T, compartment);
+            rate = evaluation.heating[a] * inner.hydrostatics->per_kelvin();
+        }
+        drive_[a] = {narrow(force.x), narrow(force.y), narrow(rate.x), narrow(rate.y)};
     });
     for (int s = 0; s < inner.count; ++s) {
         const double time = s * inner.step;
@@ -102,7 +119,13 @@ void Pressure::run(Particles& particles, Evaluation& evaluation, const InnerStep
         p_.swap(next_p_);
     }
     for_particles(n, threads_, [&](std::size_t a) {
-        particles.fields[a] = {flow_[a].u, flow_[a].v, p_[a], particles.fields[a].T};
+        Fields& f = particles.fields[a];
+        const auto gain = [&](float now, double before) {
+            return static_cast<double>(now) - static_cast<double>(narrow(before));
+        };
+        f.u += gain(flow_[a].u, f.u);
+        f.v += gain(flow_[a].v, f.v);
+        f.p += gain(p_[a], f.p);
         evaluation.slope_x[a].p = flow_[a].px;
         evaluation.slope_y[a].p = flow_[a].py;
     });

@@ -1,5 +1,6 @@
 // The inner steps: velocity and pressure with the acoustic time step, everything else frozen
-// (docs/theory-fluid.md, "Pressure").
+// (docs/theory-fluid.md, "Pressure"). In single precision; what they add over one outer step
+// is added to the particles' double-precision fields.
 
 #pragma once
 
@@ -31,8 +32,12 @@ class Pressure {
 
   private:
     /// Velocity and gradient of p of one particle, gathered together.
-    struct alignas(32) Flow {
-        double u, v, px, py;
+    struct alignas(16) Flow {
+        float u, v, px, py;
+    };
+    /// dv/dt without the pressure at the start, and its rate of change.
+    struct alignas(16) Drive {
+        float x, y, rate_x, rate_y;
     };
 
     template <bool Buoyancy>
@@ -45,7 +50,9 @@ class Pressure {
 
     int threads_;
     std::vector<Flow> flow_;
-    std::vector<double> p_, next_p_;
+    std::vector<Drive> drive_;
+    std::vector<float> p_, next_p_;
+    std::vector<float> curvature_; ///< sum V F (p_a - p_b)
 };
 
 } // namespace duet::fluid

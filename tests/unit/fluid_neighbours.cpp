@@ -22,39 +22,78 @@ Particles random_cloud(std::size_t count) {
     return particles;
 }
 
+bool find(const Particles& particles,
+          const CellGrid& grid,
+          float support,
+          std::size_t a,
+          Neighbours& found) {
+    static Surroundings surroundings;
+    const Vec2 x = particles.position(a);
+    return surroundings.collect(particles, grid, grid.column(x.x), grid.row(x.y))
+           && surroundings.find(x, support, found);
+}
+
 TEST(FluidNeighbours, EqualAllPairs) {
-    const double support = 0.1;
+    const float support = 0.1F;
     const CellGrid grid({0, 0}, {1, 1}, support);
     Particles particles = random_cloud(600);
     particles.sort(grid);
     Neighbours found;
     for (std::size_t a = 0; a < particles.size(); ++a) {
-        ASSERT_TRUE(find_neighbours(particles, grid, support, a, found));
+        ASSERT_TRUE(find(particles, grid, support, a, found));
         std::set<std::uint32_t> expected, got;
         for (std::uint32_t b = 0; b < particles.size(); ++b) {
             if (b != a && norm(particles.position(a) - particles.position(b)) < support) {
                 expected.insert(b);
             }
         }
-        for (int i = 0; i < found.count; ++i) {
-            const auto k = static_cast<std::size_t>(i);
+        for (std::size_t k = 0; k < found.count; ++k) {
             got.insert(found.index[k]);
             const Vec2 r = particles.position(a) - particles.position(found.index[k]);
-            EXPECT_EQ(found.x[k], r.x);
-            EXPECT_EQ(found.y[k], r.y);
-            EXPECT_NEAR(found.r2[k], dot(r, r), 1e-15);
+            EXPECT_NEAR(found.x[k], r.x, 3e-7 * support); // places relative to the cell, as floats
+            EXPECT_NEAR(found.y[k], r.y, 3e-7 * support);
         }
         EXPECT_EQ(got, expected) << "particle " << a;
-        EXPECT_EQ(static_cast<std::size_t>(found.count), expected.size());
+        EXPECT_EQ(found.count, expected.size());
     }
 }
 
+#ifdef __AVX2__
+TEST(FluidNeighbours, EightAtATimeAreThoseOneByOne) {
+    const float support = 0.1F;
+    const CellGrid grid({0, 0}, {1, 1}, support);
+    Particles particles = random_cloud(900);
+    particles.sort(grid);
+    static Surroundings surroundings;
+    Neighbours packed, plain;
+    for (std::size_t a = 0; a < particles.size(); ++a) {
+        const Vec2 x = particles.position(a);
+        ASSERT_TRUE(surroundings.collect(particles, grid, grid.column(x.x), grid.row(x.y)));
+        ASSERT_TRUE(surroundings.find_packed(x, support, packed));
+        ASSERT_TRUE(surroundings.find_plainly(x, support, plain));
+        ASSERT_EQ(packed.count, plain.count);
+        for (std::size_t k = 0; k < plain.count; ++k) {
+            EXPECT_EQ(packed.index[k], plain.index[k]);
+            EXPECT_EQ(packed.x[k], plain.x[k]);
+            EXPECT_EQ(packed.y[k], plain.y[k]);
+        }
+    }
+}
+#endif
+
 TEST(FluidNeighbours, TooManyAreRefused) {
     const CellGrid grid({0, 0}, {1, 1}, 0.5);
-    Particles particles = random_cloud(600);
-    particles.sort(grid);
     Neighbours found;
-    EXPECT_FALSE(find_neighbours(particles, grid, 0.5, 0, found));
+    Particles few = random_cloud(180); // all within reach of the surroundings, 64 too close
+    few.sort(grid);
+    std::size_t middle = 0;
+    while (norm(few.position(middle) - Vec2{0.5, 0.5}) > 0.1) {
+        ++middle;
+    }
+    EXPECT_FALSE(find(few, grid, 0.5F, middle, found));
+    Particles many = random_cloud(600);
+    many.sort(grid);
+    EXPECT_FALSE(find(many, grid, 0.1F, 0, found));
 }
 
 TEST(FluidNeighbours, SortKeepsTheOrderWithinACell) {
