@@ -1,6 +1,7 @@
 #include "fluid_solver/fluid_participant.hpp"
 
 #include "fluid_solver/fluid_probes.hpp"
+#include "protocol/function.hpp"
 
 namespace duet::fluid {
 
@@ -70,7 +71,8 @@ Config config_from_scene(const v1::Scene& scene, unsigned threads) {
     config.conductivity = fluid.conductivity();
     config.thermal_expansion = fluid.thermal_expansion();
     config.reference_temperature = fluid.reference_temperature();
-    config.initial_temperature = fluid.initial_temperature();
+    config.initial_temperature =
+        protocol::number_of(fluid.initial_temperature(), "initial_temperature of the fluid");
     config.initial_velocity = to_vector(fluid.initial_velocity());
     config.gravity = to_vector(scene.gravity());
     for (const auto& wall : fluid.wall()) {

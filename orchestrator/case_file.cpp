@@ -1,7 +1,9 @@
 #include "orchestrator/case_file.hpp"
 
 #include "orchestrator/overrides.hpp"
+#include "orchestrator/reference_table.hpp"
 #include "orchestrator/schema.hpp"
+#include "protocol/function.hpp"
 
 #include <toml++/toml.h>
 
@@ -106,6 +108,12 @@ class Reader {
     read_choice(const toml::node& node, Message& m, const Field& field, const std::string& path);
     void
     read_vector(const toml::node& node, Message& m, const Field& field, const std::string& path);
+    void read_pair_of_functions(const toml::node& node,
+                                Message& m,
+                                const Field& field,
+                                const std::string& path);
+    void fill(const toml::node& node, v1::Function& f, const Field& field, const std::string& path);
+    void fill_table(const toml::table& table, v1::TimeTable& t, const std::string& path);
     void fill_absent(Message& message, const Field& field, const std::string& path);
     std::optional<std::string> existing_file(const std::string& text, const std::string& path);
 
@@ -238,6 +246,10 @@ void Reader::read_one(const toml::node& node,
         return read_choice(node, m, field, path);
     case Kind::vector:
         return read_vector(node, m, field, path);
+    case Kind::function:
+        return fill(node, static_cast<v1::Function&>(submessage(m, field)), field, path);
+    case Kind::vector_function:
+        return read_pair_of_functions(node, m, field, path);
     case Kind::table:
         if (!node.is_table())
             return wrong_type(node, field, path);
@@ -336,6 +348,79 @@ void Reader::read_vector(const toml::node& node,
     auto& vector = static_cast<v1::Vector&>(submessage(m, field));
     vector.set_x(x);
     vector.set_y(y);
+}
+
+void Reader::read_pair_of_functions(const toml::node& node,
+                                    Message& m,
+                                    const Field& field,
+                                    const std::string& path) {
+    const toml::array* pair = node.as_array();
+    if (!pair || pair->size() != 2)
+        return wrong_type(node, field, path);
+    auto& functions = static_cast<v1::VectorFunction&>(submessage(m, field));
+    fill((*pair)[0], *functions.mutable_x(), field, path + "[0]");
+    fill((*pair)[1], *functions.mutable_y(), field, path + "[1]");
+}
+
+void Reader::fill(const toml::node& node,
+                  v1::Function& f,
+                  const Field& field,
+                  const std::string& path) {
+    if (node.is_string())
+        f.set_formula(node.value_or(std::string{}));
+    else if (node.is_table())
+        fill_table(*node.as_table(), *f.mutable_table(), path);
+    else if (node.is_number())
+        f.set_number(node.value_or(0.0));
+    else
+        return wrong_type(node, field, path);
+
+    std::vector<double> values(f.table().value().begin(), f.table().value().end());
+    if (f.has_number())
+        values.push_back(f.number());
+    for (const double value : values)
+        if (!std::isfinite(value))
+            return problem(path, path + " must be a finite number");
+        else if (const auto broken = range_broken(field, value))
+            return problem(path, path + " " + *broken);
+    try {
+        const protocol::Function tried(f);
+    } catch (const std::invalid_argument& fault) {
+        problem(path, path + ": " + fault.what());
+    }
+}
+
+/// { time = [..], value = [..] }, or columns of a CSV file.
+void Reader::fill_table(const toml::table& table, v1::TimeTable& t, const std::string& path) {
+    const auto text = [&](const char* key) { return table[key].value_or(std::string{}); };
+    if (const std::string name = text("file"); !name.empty()) {
+        const auto file = existing_file(name, path);
+        if (!file)
+            return;
+        try {
+            const ReferenceTable columns(*file);
+            const std::vector<double>& time = columns.column(text("along"));
+            const std::vector<double>& value = columns.column(text("column"));
+            t.mutable_time()->Add(time.begin(), time.end());
+            t.mutable_value()->Add(value.begin(), value.end());
+        } catch (const std::runtime_error& fault) {
+            problem(path, path + ": " + fault.what());
+        }
+        return;
+    }
+    for (const auto& [key, target] :
+         {std::pair{"time", t.mutable_time()}, std::pair{"value", t.mutable_value()}}) {
+        const toml::array* numbers = table[key].as_array();
+        for (std::size_t i = 0; numbers && i < numbers->size(); ++i)
+            if ((*numbers)[i].is_number())
+                target->Add((*numbers)[i].value_or(0.0));
+        if (!numbers || target->size() != static_cast<int>(numbers->size()))
+            return problem(path,
+                           path
+                               + " must hold two arrays of numbers, { time = [..], value = [..] }"
+                                 ", or name a file: { file = \"motion.csv\", along = \"t\", "
+                                 "column = \"angle\" }");
+    }
 }
 
 } // namespace

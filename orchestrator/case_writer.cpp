@@ -35,6 +35,25 @@ std::string pair_text(const Message& message) {
     return "[" + number_text(vector.x()) + ", " + number_text(vector.y()) + "]";
 }
 
+std::string array_text(const google::protobuf::RepeatedField<double>& numbers) {
+    std::string text = "[";
+    for (int i = 0; i < numbers.size(); ++i)
+        text += (i > 0 ? ", " : "") + number_text(numbers[i]);
+    return text + "]";
+}
+
+std::string function_text(const v1::Function& function) {
+    switch (function.kind_case()) {
+    case v1::Function::kFormula:
+        return toml_string(function.formula());
+    case v1::Function::kTable:
+        return "{ time = " + array_text(function.table().time())
+               + ", value = " + array_text(function.table().value()) + " }";
+    default:
+        return number_text(function.number());
+    }
+}
+
 /// The value of a key that is no table, as TOML; entry `i` of a repeated one.
 std::string entry_text(const Message& m, const Field& field, int i) {
     const auto& r = *m.GetReflection();
@@ -52,6 +71,12 @@ std::string entry_text(const Message& m, const Field& field, int i) {
         return toml_string(choices(field)[static_cast<std::size_t>(r.GetEnum(m, &field)->index())]);
     case Kind::vector:
         return pair_text(many ? r.GetRepeatedMessage(m, &field, i) : r.GetMessage(m, &field));
+    case Kind::function:
+        return function_text(static_cast<const v1::Function&>(r.GetMessage(m, &field)));
+    case Kind::vector_function: {
+        const auto& pair = static_cast<const v1::VectorFunction&>(r.GetMessage(m, &field));
+        return "[" + function_text(pair.x()) + ", " + function_text(pair.y()) + "]";
+    }
     case Kind::table:
         break;
     }
@@ -140,6 +165,10 @@ std::string type_text(const Field& field) {
     case Kind::vector:
         type = "[x, y]";
         break;
+    case Kind::function:
+        return "function";
+    case Kind::vector_function:
+        return "[x, y] of functions";
     case Kind::table:
         type = "table";
         break;
@@ -201,7 +230,7 @@ std::string write_case(const v1::Scene& scene) {
 }
 
 std::string case_file_reference() {
-    std::string out = R"(# The case file
+    std::string out = R"page(# The case file
 
 Written by `duet reference` from `protocol/proto/duet/v1/scene.proto`; a test keeps it current.
 
@@ -210,9 +239,20 @@ strain, per metre of depth; x points right, y up. A key may be replaced on the c
 `--set fluid.spacing=0.2`, `--set solid.body[0].element_size=0.1`, `--set 'coupling.schedule="parallel"'`.
 A table without required keys is always there, filled with its defaults; the others are absent until written.
 
+A *function* is a number, a formula, or a table in time:
+
+    temperature = 300
+    temperature = "300 + 10*sin(pi*x)*(t < 2 ? t/2 : 1)"
+    temperature = { time = [0, 0.5, 2], value = [300, 310, 305] }
+    temperature = { file = "measured.csv", along = "t_s", column = "T_K" }
+
+A formula may use the coordinates `x` and `y`, the time `t`, `pi`, the operators `+ - * / ^ < <= > >= == != && || ?:` and the functions
+`sin cos tan asin acos atan atan2 sinh cosh tanh exp ln log10 sqrt abs sign rint min max`. A table is linear between its times and constant
+beyond them; its file lies beside the case file.
+
 ## The top of the file
 
-)";
+)page";
     document(*v1::Scene::descriptor(), "", out);
     out += "\n## Audit figures\n\nA `[[check]]` names a probe or one of these; besides them every "
            "number of a "

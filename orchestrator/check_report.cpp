@@ -58,16 +58,26 @@ double particles_of(const v1::Scene& scene) {
     return (area(region) - solid_area(scene)) / (fluid.spacing() * fluid.spacing());
 }
 
+/// The values that a function is known to take; a formula counts as two different ones.
+void add_values(const v1::Function& function, std::vector<double>& all) {
+    if (function.has_formula())
+        all.insert(all.end(), {0, 1});
+    else if (function.has_table())
+        all.insert(all.end(), function.table().value().begin(), function.table().value().end());
+    else
+        all.push_back(function.number());
+}
+
 /// Every temperature of the scene; all equal means that no heat flows.
 std::vector<double> temperatures(const v1::Scene& scene) {
     std::vector<double> all;
     if (scene.has_fluid())
-        all.push_back(scene.fluid().initial_temperature());
+        add_values(scene.fluid().initial_temperature(), all);
     for (const v1::Wall& wall : scene.fluid().wall())
         if (wall.has_temperature())
             all.push_back(wall.temperature());
     for (const v1::Body& body : scene.solid().body()) {
-        all.push_back(body.initial_temperature());
+        add_values(body.initial_temperature(), all);
         for (const v1::Boundary& boundary : body.boundary()) {
             if (boundary.has_temperature())
                 all.push_back(boundary.temperature());

@@ -31,6 +31,7 @@ struct Arguments {
 Case checked_case(const Arguments& arguments) {
     Case given = read_case(arguments.where, arguments.overrides);
     check_scene(given);
+    leave_out_later_checks(given);
     return given;
 }
 

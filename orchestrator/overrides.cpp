@@ -1,7 +1,9 @@
 #include "orchestrator/overrides.hpp"
 
+#include <algorithm>
 #include <cctype>
 #include <cstddef>
+#include <cstring>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -92,6 +94,11 @@ std::string apply_override(toml::table& root, const std::string& text) {
     try {
         parsed = toml::parse("value = " + text.substr(equals + 1));
     } catch (const toml::parse_error&) {
+        const std::string word = text.substr(equals + 1); // parallel: a string without its quotes
+        if (!word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) {
+                return std::isalnum(c) || std::strchr("_-./", c);
+            }))
+            parsed.insert("value", word);
     }
     toml::node* value = parsed.get("value");
     if (!value || parsed.size() != 1)

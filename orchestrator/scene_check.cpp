@@ -22,6 +22,16 @@ std::string at_text(const Point& p) {
     return "[" + number_text(p.x()) + ", " + number_text(p.y()) + "]";
 }
 
+/// The end of the run, but for rounding.
+double latest(const v1::Scene& scene) {
+    return scene.time().end() * (1 + 1e-12);
+}
+
+/// True if the end of the run was given on the command line.
+bool shortened(const Case& given) {
+    return given.places.find("time.end").source.starts_with("--set");
+}
+
 class Checker {
   public:
     explicit Checker(const Case& given) : case_(given), scene_(given.scene) {
@@ -282,7 +292,7 @@ void Checker::check_check(const v1::Check& check, const std::string& path) {
     const v1::Probe* probe = find_probe(check.quantity());
     check_quantity(check, probe, path);
     for (int i = 0; i < check.at_size(); ++i)
-        if (check.at(i) < 0 || check.at(i) > scene_.time().end() * (1 + 1e-12))
+        if (check.at(i) < 0 || (!shortened(case_) && check.at(i) > latest(scene_)))
             problem(entry(path + ".at", i),
                     "the time " + number_text(check.at(i)) + " lies outside the run, 0 to "
                         + number_text(scene_.time().end()) + " s");
@@ -361,6 +371,25 @@ void check_scene(const Case& given) {
     std::vector<Problem> problems = Checker(given).run();
     if (!problems.empty())
         throw CaseError(std::move(problems));
+}
+
+void leave_out_later_checks(Case& given) {
+    if (!shortened(given))
+        return;
+    auto& checks = *given.scene.mutable_check();
+    checks.erase(std::remove_if(checks.begin(),
+                                checks.end(),
+                                [&](v1::Check& check) {
+                                    const int before = check.at_size();
+                                    auto& at = *check.mutable_at();
+                                    at.erase(std::remove_if(
+                                                 at.begin(),
+                                                 at.end(),
+                                                 [&](double t) { return t > latest(given.scene); }),
+                                             at.end());
+                                    return before > 0 && at.empty();
+                                }),
+                 checks.end());
 }
 
 } // namespace duet::orchestrator

@@ -19,7 +19,13 @@ Kind kind_of(const Field& field) {
     case Field::CPPTYPE_ENUM:
         return Kind::choice;
     case Field::CPPTYPE_MESSAGE:
-        return field.message_type() == v1::Vector::descriptor() ? Kind::vector : Kind::table;
+        if (field.message_type() == v1::Vector::descriptor())
+            return Kind::vector;
+        if (field.message_type() == v1::Function::descriptor())
+            return Kind::function;
+        if (field.message_type() == v1::VectorFunction::descriptor())
+            return Kind::vector_function;
+        return Kind::table;
     default:
         return Kind::whole_number; // scene.proto has uint32 besides
     }
@@ -44,6 +50,10 @@ std::string expected(const Field& field) {
         return "one of the strings " + list(choices(field));
     case Kind::vector:
         return many ? "an array of pairs [x, y]" : "a pair of numbers [x, y]";
+    case Kind::function:
+        return "a number, a formula in x, y and t, or a table in time";
+    case Kind::vector_function:
+        return "a pair [x, y] of numbers, formulas or tables in time";
     case Kind::table:
         return many ? "an array of tables" : "a table";
     }

@@ -17,7 +17,17 @@ using Field = google::protobuf::FieldDescriptor;
 using Table = google::protobuf::Descriptor;
 
 /// Kind of value that a key takes.
-enum class Kind { number, whole_number, boolean, text, choice, vector, table };
+enum class Kind {
+    number,
+    whole_number,
+    boolean,
+    text,
+    choice,
+    vector,
+    function,
+    vector_function,
+    table
+};
 
 Kind kind_of(const Field& field);
 

@@ -1,5 +1,6 @@
 #include "solid_solver/solid_participant.hpp"
 
+#include "protocol/function.hpp"
 #include "solid_solver/state.hpp"
 
 #include <algorithm>
@@ -61,9 +62,10 @@ BodyConfig config_from_scene(const v1::Body& body, unsigned threads) {
     config.material.youngs_modulus = body.youngs_modulus();
     config.material.poissons_ratio = body.poissons_ratio();
     config.material.thermal_expansion = body.thermal_expansion();
-    config.initial_temperature = body.initial_temperature();
+    config.initial_temperature =
+        protocol::number_of(body.initial_temperature(), "initial_temperature of a body");
     config.reference_temperature = body.has_reference_temperature() ? body.reference_temperature()
-                                                                    : body.initial_temperature();
+                                                                    : config.initial_temperature;
     config.initial_velocity = to_point(body.initial_velocity());
     config.heat_source = body.heat_source();
     config.body_force = to_point(body.body_force());

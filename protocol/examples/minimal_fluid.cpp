@@ -4,6 +4,7 @@
 // It shows all a fluid has to do. Give it to a run in the place of a real one, or start here to
 // write one.
 
+#include "protocol/function.hpp"
 #include "protocol/participant.hpp"
 
 #include <cmath>
@@ -26,6 +27,7 @@ class MinimalFluid final : public FluidSolver {
                    const InterfaceMotion&,
                    v1::Ready& ready) override {
         scene_ = configure.scene();
+        temperature_ = number_of(scene_.fluid().initial_temperature(), "initial_temperature");
         chains_ = chains;
         ready.set_stable_step(0); // 0: any window will do
         ready.add_model("prescribed traction and heat flux on the interface");
@@ -110,7 +112,7 @@ class MinimalFluid final : public FluidSolver {
             sample.set_probe(probe.name());
             sample.set_time(time);
             if (probe.quantity() == "temperature" || probe.quantity() == "mean_temperature")
-                sample.add_value(scene_.fluid().initial_temperature());
+                sample.add_value(temperature_);
             else
                 throw Error(v1::Failed::SCENE,
                             "Probe '" + probe.name() + "' asks for '" + probe.quantity()
@@ -120,6 +122,7 @@ class MinimalFluid final : public FluidSolver {
 
     v1::Scene scene_;
     std::vector<Chain> chains_;
+    double temperature_ = 0; // K
     v1::Ledger ledger_;
 };
 

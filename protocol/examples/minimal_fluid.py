@@ -23,6 +23,7 @@ class MinimalFluid(duet.FluidSolver):
     def configure(self, configure, chains, start, ready):
         # The interface comes first: its chains of nodes, and where they are at the start.
         self.scene = configure.scene
+        self.temperature = duet.evaluate(self.scene.fluid.initial_temperature)
         self.ledger = duet.v1.Ledger()
         # Segment j runs from node first[j] to node second[j].
         self.first, self.second = [], []
@@ -82,7 +83,7 @@ class MinimalFluid(duet.FluidSolver):
                 raise duet.Error(duet.v1.Failed.SCENE,
                                  f"Probe '{probe.name}' asks for '{probe.quantity}'; this fluid "
                                  "knows temperature and mean_temperature.")
-            samples.add(probe=probe.name, time=time, value=[self.scene.fluid.initial_temperature])
+            samples.add(probe=probe.name, time=time, value=[self.temperature])
 
 
 if __name__ == "__main__":

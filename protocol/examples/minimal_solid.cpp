@@ -4,6 +4,7 @@
 // It shows all a solid has to do. Give it to a run in the place of a real one, or start here to
 // write one.
 
+#include "protocol/function.hpp"
 #include "protocol/participant.hpp"
 
 #include <algorithm>
@@ -25,6 +26,7 @@ class MinimalSolid final : public SolidSolver {
                    InterfaceMotion& start) override {
         scene_ = configure.scene();
         const v1::Body& body = scene_.solid().body(0);
+        temperature_ = number_of(body.initial_temperature(), "initial_temperature");
         if (scene_.has_fluid())
             outline(body, chains, start);
         start_ = start;
@@ -88,7 +90,7 @@ class MinimalSolid final : public SolidSolver {
                     start.position.push_back(a[d] + (b[d] - a[d]) * j / segments);
                 start.velocity.push_back(body.initial_velocity().x());
                 start.velocity.push_back(body.initial_velocity().y());
-                start.temperature.push_back(body.initial_temperature());
+                start.temperature.push_back(temperature_);
             }
         }
         chains.push_back(chain);
@@ -126,7 +128,7 @@ class MinimalSolid final : public SolidSolver {
             sample.set_probe(probe.name());
             sample.set_time(time);
             if (probe.quantity() == "temperature" || probe.quantity() == "mean_temperature")
-                sample.add_value(scene_.solid().body(0).initial_temperature());
+                sample.add_value(temperature_);
             else if (probe.quantity() == "heat_received")
                 sample.add_value(ledger_.heat_from_interface());
             else
@@ -139,7 +141,8 @@ class MinimalSolid final : public SolidSolver {
 
     v1::Scene scene_;
     InterfaceMotion start_;
-    double time_ = 0; // s
+    double time_ = 0;        // s
+    double temperature_ = 0; // K
     v1::Ledger ledger_;
 };
 

@@ -22,12 +22,13 @@ class MinimalSolid(duet.SolidSolver):
         self.scene = configure.scene
         self.ledger = duet.v1.Ledger()
         body = self.scene.solid.body[0]
+        self.temperature = duet.evaluate(body.initial_temperature)
         chains, start = [], duet.InterfaceMotion.empty()
         if self.scene.HasField("fluid"):
             position = self.outline(body)
             nodes = len(position)
             velocity = np.tile([body.initial_velocity.x, body.initial_velocity.y], (nodes, 1))
-            temperature = np.full(nodes, body.initial_temperature)
+            temperature = np.full(nodes, self.temperature)
             chains = [duet.Chain(range(nodes), closed=True)]
             start = duet.InterfaceMotion(position, velocity, temperature)
         ready.stable_step = 0  # 0: any window will do
@@ -85,8 +86,7 @@ class MinimalSolid(duet.SolidSolver):
         for probe in self.scene.probe:
             if probe.of != duet.v1.Probe.SOLID:
                 continue
-            known = {"temperature": self.scene.solid.body[0].initial_temperature,
-                     "mean_temperature": self.scene.solid.body[0].initial_temperature,
+            known = {"temperature": self.temperature, "mean_temperature": self.temperature,
                      "heat_received": self.ledger.heat_from_interface}
             if probe.quantity not in known:
                 raise duet.Error(duet.v1.Failed.SCENE,

@@ -57,6 +57,35 @@ TEST(CaseFile, ValuesAndDefaultsReachTheScene) {
     EXPECT_FALSE(scene.fluid().wall_size());
 }
 
+TEST(CaseFile, AFunctionIsANumberAFormulaOrATable) {
+    const auto start = [](const std::string& value) {
+        return parse(small + "initial_temperature = " + value + "\n")
+            .scene.fluid()
+            .initial_temperature();
+    };
+    EXPECT_EQ(parse(small).scene.fluid().initial_temperature().number(), 0);
+    EXPECT_EQ(start("300").number(), 300);
+    EXPECT_EQ(start("\"300 + 2*x\"").formula(), "300 + 2*x");
+    EXPECT_EQ(start("{ time = [0, 2.5], value = [1, 7] }").table().value(1), 7);
+    EXPECT_EQ(start("{ time = [0, 2.5], value = [1, 7] }").table().time(1), 2.5);
+}
+
+TEST(CaseFile, AFunctionThatCannotBeReadIsSaid) {
+    const auto with = [](const std::string& value) {
+        return problems(small + "initial_temperature = " + value + "\n");
+    };
+    EXPECT_NE(with("\"300 + z\"")
+                  .find("case.toml:10:1: fluid.initial_temperature: the formula "
+                        "'300 + z' cannot be read: "),
+              std::string::npos);
+    EXPECT_NE(with("{ time = [1, 0], value = [1, 2] }").find("must rise"), std::string::npos);
+    EXPECT_NE(with("{ time = [0, 1], value = [1] }").find("as many values"), std::string::npos);
+    EXPECT_NE(with("{ times = [0, 1] }").find("two arrays of numbers"), std::string::npos);
+    EXPECT_NE(with("{ file = \"no.csv\" }").find("does not exist"), std::string::npos);
+    EXPECT_NE(with("inf").find("finite"), std::string::npos);
+    EXPECT_NE(with("true").find("must be a number, a formula"), std::string::npos);
+}
+
 TEST(CaseFile, UnknownKeyIsSaidWithItsPlaceAndTheNearest) {
     EXPECT_EQ(problems(small + "viscosity = 1\n"),
               "case.toml:10:1: unknown key 'viscosity' in [fluid]; nearest known key: "
@@ -168,7 +197,10 @@ TEST(Overrides, FaultsNameTheSet) {
         "--set fluid.densty=1: unknown key 'densty' in [fluid]; nearest known key: 'density'");
     EXPECT_NE(fault("fluid.density").find("expected KEY=VALUE"), std::string::npos);
     EXPECT_NE(fault("fluid..density=1").find("cannot read the key"), std::string::npos);
-    EXPECT_NE(fault("fluid.density=one").find("a string needs double quotes"), std::string::npos);
+    EXPECT_NE(fault("fluid.density=one").find("must be a number, not a string"), std::string::npos);
+    EXPECT_NE(fault("title=one two").find("a string needs double quotes"), std::string::npos);
+    EXPECT_EQ(parse(small, {"coupling.schedule=parallel"}).scene.coupling().schedule(),
+              v1::Coupling::PARALLEL);
     EXPECT_NE(fault("probe[2].name=\"x\"").find("there is no entry [2]"), std::string::npos);
     EXPECT_NE(fault("fluid.density.x=1").find("no table that could hold 'x'"), std::string::npos);
     EXPECT_NE(fault("fluid.density=1\nend = 2").find("is not TOML"), std::string::npos);
@@ -221,6 +253,20 @@ TEST(Schema, NearestKeyIsTheOneMeant) {
 
 // ------------------------------------------------------------------------------- writing it back
 
+void random_function(v1::Function& function, std::mt19937& random, double number) {
+    switch (random() % 3) {
+    case 0:
+        return function.set_number(number);
+    case 1:
+        return function.set_formula("2*x^2 + t/" + number_text(number));
+    default:
+        for (int i = 0; i < 3; ++i) {
+            function.mutable_table()->add_time(i * number);
+            function.mutable_table()->add_value(number / (i + 1));
+        }
+    }
+}
+
 /// Fills every field of a message with random values of its kind.
 void randomise(Message& m, std::mt19937& random) {
     const auto number = [&] {
@@ -270,6 +316,16 @@ void randomise(Message& m, std::mt19937& random) {
                     field.is_repeated() ? *r.AddMessage(&m, &field) : *r.MutableMessage(&m, &field);
                 static_cast<v1::Vector&>(vector).set_x(-number());
                 static_cast<v1::Vector&>(vector).set_y(number());
+                break;
+            }
+            case Kind::function:
+                random_function(
+                    static_cast<v1::Function&>(*r.MutableMessage(&m, &field)), random, value);
+                break;
+            case Kind::vector_function: {
+                auto& pair = static_cast<v1::VectorFunction&>(*r.MutableMessage(&m, &field));
+                random_function(*pair.mutable_x(), random, value);
+                random_function(*pair.mutable_y(), random, value);
                 break;
             }
             case Kind::table:

@@ -218,6 +218,18 @@ TEST_F(Checks, Faults) {
                       "0.7 lies outside 0 to 0.5");
 }
 
+TEST(SceneCheck, AShortenedRunLeavesLaterChecksOut) {
+    const std::string check =
+        good + "\n[[check]]\nquantity = \"p\"\nvalue = 0\ntolerance = 1\nat = ";
+    Case given = parse_case(
+        check + "[0.25, 1]\n" + check.substr(good.size()) + "[1]\n", "case.toml", {"time.end=0.5"});
+    EXPECT_NO_THROW(check_scene(given));
+    leave_out_later_checks(given);
+    ASSERT_EQ(given.scene.check_size(), 1);
+    ASSERT_EQ(given.scene.check(0).at_size(), 1);
+    EXPECT_EQ(given.scene.check(0).at(0), 0.25);
+}
+
 TEST(Geometry, InsideAndOverlapCountTouchingAsTheySay) {
     const Polygon l = {
         point(0, 0), point(2, 0), point(2, 1), point(1, 1), point(1, 2), point(0, 2)};

@@ -47,7 +47,7 @@ class SolidParticipant : public testing::Test {
         body.set_youngs_modulus(5);
         body.set_poissons_ratio(0.3);
         body.set_thermal_expansion(1e-4);
-        body.set_initial_temperature(400);
+        body.mutable_initial_temperature()->set_number(400);
         body.set_thermoelastic_heating(true);
         return body;
     }
@@ -147,7 +147,7 @@ TEST_F(SolidParticipant, ADeformableBodyMovesItsInterface) {
 }
 
 TEST_F(SolidParticipant, ProbesTakeFieldsAndIntegrals) {
-    add_body("beam", 2.5, v1::Body::DEFORMABLE).set_initial_temperature(500);
+    add_body("beam", 2.5, v1::Body::DEFORMABLE).mutable_initial_temperature()->set_number(500);
     v1::Probe& point = add_probe("point", "temperature");
     point.mutable_at()->set_x(0.77);
     point.mutable_at()->set_y(1.33);

@@ -9,9 +9,10 @@
 Needs Debian's python3-zmq, python3-protobuf, python3-numpy and protobuf-compiler.
 """
 
+from .function import evaluate
 from .messages import v1
 from .participant import participate
 from .solver import (Chain, Error, FluidSolver, InterfaceLoad, InterfaceMotion, SolidSolver, Window)
 
 __all__ = ["Chain", "Error", "FluidSolver", "InterfaceLoad", "InterfaceMotion", "SolidSolver",
-           "Window", "participate", "v1"]
+           "Window", "evaluate", "participate", "v1"]
