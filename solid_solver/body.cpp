@@ -30,6 +30,11 @@ Body::Body(BodyConfig config)
       heat_(config_, domains_) {
     if (config_.motion == Motion::deformable) {
         mechanics_.emplace(config_, domains_, heat_.temperature(), heat_.capacity());
+    }
+    if (config_.stepping == Stepping::implicit_steps) {
+        implicit_.emplace(heat_, mechanics_ ? &*mechanics_ : nullptr);
+    }
+    if (mechanics_) {
         return;
     }
     rest_velocity_.assign(2 * nodes(), 0.0);
@@ -69,6 +74,34 @@ void Body::step(double dt) {
 }
 
 std::uint32_t Body::advance(double length) {
+    const std::uint32_t steps = implicit_ ? advance_implicitly(length) : advance_explicitly(length);
+    check_finite();
+    return steps;
+}
+
+std::uint32_t Body::advance_implicitly(double length) {
+    const double longest = config_.implicit_step > 0 ? config_.implicit_step : length;
+    double count = std::max(1.0, std::ceil(length / longest * (1 - 1e-12)));
+    std::uint32_t taken = 0;
+    for (double left = length; count > 0;) {
+        const double dt = left / count;
+        if (implicit_->step(dt)) {
+            left -= dt;
+            --count;
+            ++taken;
+        } else if (dt < 1e-4 * length) {
+            std::ostringstream sentence;
+            sentence << "Body '" << config_.name << "': no implicit step converges, not even of "
+                     << dt << " s; its loads are too large for its stiffness.";
+            throw std::runtime_error(sentence.str());
+        } else {
+            count *= 2;
+        }
+    }
+    return taken;
+}
+
+std::uint32_t Body::advance_explicitly(double length) {
     constexpr double safety = 0.9; // the bound is an estimate from below of a frequency that moves
     constexpr double steps_between_updates = 256;
     std::uint32_t taken = 0;

@@ -4,6 +4,7 @@
 
 #include "solid_solver/equilibrium.hpp"
 #include "solid_solver/heat.hpp"
+#include "solid_solver/implicit.hpp"
 #include "solid_solver/mechanics.hpp"
 
 #include <cstdint>
@@ -38,9 +39,11 @@ class Body {
     /// One explicit step of length dt.
     void step(double dt);
 
-    /// Advances by `length` in the least number of equal steps not longer than 0.9 of the stable
-    /// one, which is looked at again every 256 steps; returns their number. Throws
-    /// std::runtime_error naming body and node if the numbers are no longer finite.
+    /// Advances by `length`; returns the number of steps. Explicit: in the least number of equal
+    /// steps not longer than 0.9 of the stable one, which is looked at again every 256 steps.
+    /// Implicit: in equal steps not longer than the longest asked for, halved where Newton's method
+    /// does not converge. Throws std::runtime_error naming the body if the numbers are no longer
+    /// finite, or no implicit step converges.
     std::uint32_t advance(double length);
 
     /// Puts a deformable body to rest in static equilibrium with its loads at its temperature; see
@@ -53,6 +56,7 @@ class Body {
 
     const Heat& heat() const { return heat_; }
     Heat& heat() { return heat_; }
+    const std::optional<Implicit>& implicit() const { return implicit_; }
     const std::optional<Mechanics>& mechanics() const { return mechanics_; }
     std::optional<Mechanics>& mechanics() { return mechanics_; }
 
@@ -62,17 +66,23 @@ class Body {
         if (mechanics_) {
             mechanics_->visit_state(visit);
         }
+        if (implicit_) {
+            implicit_->visit_state(visit);
+        }
         visit(steps_since_update_);
     }
 
   private:
     void check_finite() const;
+    std::uint32_t advance_explicitly(double length);
+    std::uint32_t advance_implicitly(double length);
 
     BodyConfig config_;
     Domains domains_;
     double area_ = mesh_area(config_.mesh);
     Heat heat_;
     std::optional<Mechanics> mechanics_;
+    std::optional<Implicit> implicit_;
     std::vector<double> rest_position_, rest_velocity_; ///< of a fixed body
     double steps_since_update_ = 0;
 };

@@ -51,6 +51,12 @@ enum class Motion {
     deformable ///< thermo-elastic, total Lagrangian
 };
 
+enum class Stepping {
+    explicit_steps, ///< central difference and forward Euler within their stable step
+    implicit_steps, ///< TR-BDF2, as long as asked for
+    automatic       ///< whichever of the two is likely to cost less
+};
+
 struct BodyConfig {
     std::string name;
     Mesh mesh;
@@ -63,7 +69,10 @@ struct BodyConfig {
     double heat_source = 0;            ///< W/m3
     Point body_force = Point::Zero();  ///< m/s2
     double stiffness_damping = 0;      ///< s (63)
+    double mass_damping = 0;           ///< 1/s: the force -a M v on the nodes
     bool thermoelastic_heating = true; ///< (31)
+    Stepping stepping = Stepping::explicit_steps;
+    double implicit_step = 0; ///< s, longest implicit step; 0: as long as the advance asked for
     std::vector<BoundaryCondition> boundary;
     int threads = 1;
 };

@@ -98,4 +98,14 @@ void Conduction::advance(const double* temperature,
     }
 }
 
+void Conduction::flow(const double* temperature, double* out) const {
+    for (std::size_t i = 0; i < nodes(); ++i) {
+        double sum = 0;
+        for (std::uint32_t j = first_[i]; j < first_[i + 1]; ++j) {
+            sum += conductance_[j] * (temperature[neighbour_[j]] - temperature[i]);
+        }
+        out[i] = sum;
+    }
+}
+
 } // namespace duet::solid

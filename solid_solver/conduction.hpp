@@ -26,6 +26,19 @@ class Conduction {
                  std::size_t begin,
                  std::size_t end) const;
 
+    /// out_I = sum_J G_IJ (T_J - T_I), W/m.
+    void flow(const double* temperature, double* out) const;
+
+    /// Calls visit(I, J, G_IJ) for each pair I > J.
+    template <class Visit>
+    void for_pairs(const Visit& visit) const {
+        for (std::uint32_t i = 0; i < nodes(); ++i) {
+            for (std::uint32_t j = first_[i]; j < first_[i + 1] && neighbour_[j] < i; ++j) {
+                visit(i, neighbour_[j], conductance_[j]);
+            }
+        }
+    }
+
     std::size_t nodes() const { return first_.size() - 1; }
     std::size_t pairs() const { return neighbour_.size() / 2; }
 

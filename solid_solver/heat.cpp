@@ -113,10 +113,44 @@ void Heat::step(double dt, std::span<const double> thermoelastic) {
     account_.interface += dt * interface_power_;
     account_.walls += dt * flux_power_;
     account_.sources += dt * source_power_;
-    for (const Fixed& fixed : fixed_) { // what must come in there to keep the temperature
+    hold();
+}
+
+/// Prescribed temperatures: what must come in there to keep them.
+void Heat::hold() {
+    for (const Fixed& fixed : fixed_) {
         account_.walls += capacity_[fixed.node] * (fixed.temperature - temperature_[fixed.node]);
         temperature_[fixed.node] = fixed.temperature;
     }
+}
+
+void Heat::flow(std::span<const double> temperature, std::span<double> out) const {
+    conduction_.flow(temperature.data(), out.data());
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        out[i] += load_[i];
+    }
+    for (const Exchange& exchange : exchange_) {
+        out[exchange.node] +=
+            exchange.coefficient * (exchange.temperature - temperature[exchange.node]);
+    }
+}
+
+void Heat::book(double length, std::span<const double> temperature) {
+    account_.interface += length * interface_power_;
+    account_.walls += length * flux_power_;
+    account_.sources += length * source_power_;
+    for (const Exchange& exchange : exchange_) {
+        account_.walls +=
+            length * exchange.coefficient * (exchange.temperature - temperature[exchange.node]);
+    }
+}
+
+void Heat::take(std::span<const double> heat, std::span<const double> thermoelastic) {
+    for (std::size_t i = 0; i < temperature_.size(); ++i) {
+        temperature_[i] += (heat[i] + thermoelastic[i]) / capacity_[i];
+        account_.thermoelastic += thermoelastic[i];
+    }
+    hold();
 }
 
 double Heat::stored() const {

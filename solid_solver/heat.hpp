@@ -29,6 +29,31 @@ class Heat {
     /// One explicit step. `thermoelastic`: W/m into each node by compression, or empty.
     void step(double dt, std::span<const double> thermoelastic = {});
 
+    // What an implicit step is made of (implicit.hpp).
+
+    /// W/m into each node at `temperature` [N]: loads, convection and conduction.
+    void flow(std::span<const double> temperature, std::span<double> out) const;
+    /// Books `length` seconds of the loads and of convection at `temperature` [N].
+    void book(double length, std::span<const double> temperature);
+    /// Puts `heat` [N] J/m, booked before, and `thermoelastic` [N] J/m into the nodes; prescribed
+    /// temperatures take what they need.
+    void take(std::span<const double> heat, std::span<const double> thermoelastic);
+    const Conduction& conduction() const { return conduction_; }
+    /// Calls visit(node, W/(m K)) for each node that exchanges heat by convection.
+    template <class Visit>
+    void for_exchange(const Visit& visit) const {
+        for (const Exchange& exchange : exchange_) {
+            visit(exchange.node, exchange.coefficient);
+        }
+    }
+    /// Calls visit(node, K) for each node of prescribed temperature.
+    template <class Visit>
+    void for_prescribed(const Visit& visit) const {
+        for (const Fixed& fixed : fixed_) {
+            visit(fixed.node, fixed.temperature);
+        }
+    }
+
     /// 2 / lambda_max of C^-1 (K + exchange); 0: no limit, nothing conducts.
     double stable_step() const { return stable_step_; }
 
@@ -67,6 +92,7 @@ class Heat {
 
     void apply_boundary(const BodyConfig& body);
     void collect_load();
+    void hold();
     double bound() const;
 
     int threads_;

@@ -30,6 +30,7 @@ Mechanics::Mechanics(const BodyConfig& body,
     : domains_(domains), threads_(body.threads), lambda_(body.material.lambda()),
       mu_(body.material.mu()), beta_(body.material.beta()),
       reference_temperature_(body.reference_temperature), damping_(body.stiffness_damping),
+      mass_damping_(body.mass_damping),
       heat_capacity_(body.material.density * body.material.heat_capacity),
       heated_(body.thermoelastic_heating && beta_ * reference_temperature_ != 0),
       capacity_(capacity.begin(), capacity.end()), spectrum_(2 * body.mesh.node.size()) {
@@ -51,13 +52,14 @@ Mechanics::Mechanics(const BodyConfig& body,
     displacement_.assign(2 * nodes, 0.0);
     position_.resize(2 * nodes);
     stress_.assign(3 * domains.size(), 0.0);
-    trace_.assign(domains.size(), 0.0);
+    latent_.assign(nodes, 0.0);
     contribution_.resize(2 * slots * domains.size());
     heat_share_.resize(slots * domains.size());
+    heating_.resize(nodes);
     nodal_change_.resize(nodes);
     set_motion(std::vector<double>(2 * nodes, 0.0), std::vector<double>(velocity_), temperature);
     frequency_ = std::sqrt(spectrum_.largest(
-        [this](const double* u, double* f) { apply_tangent(u, f); }, inverse_mass_));
+        [this](const double* u, double* f) { apply_adiabatic_tangent(u, f); }, inverse_mass_));
 }
 
 void Mechanics::apply_boundary(const BodyConfig& body) {
@@ -88,10 +90,7 @@ void Mechanics::set_motion(std::span<const double> displacement,
     }
     place();
     compute_forces(0, temperature); // no rate yet: the damping sets in with the first step
-    for (std::size_t k = 0; k < domains_.size(); ++k) {
-        const Gradient g = displacement_gradient(k, displacement_.data());
-        trace_[k] = g.xx + g.yy + 0.5 * (g.xx * g.xx + g.yx * g.yx + g.xy * g.xy + g.yy * g.yy);
-    }
+    latent_heat(displacement_, latent_);
 }
 
 void Mechanics::place() {
@@ -117,7 +116,10 @@ void Mechanics::kick(double half_step) {
     }
 }
 
+// Mass-proportional damping -a M v is centred in the step: v at its start before the first half
+// kick, v at its end after the second.
 void Mechanics::drift(double dt) {
+    slow_down(1 - 0.5 * mass_damping_ * dt);
     kick(0.5 * dt);
     for (std::size_t c = 0; c < displacement_.size(); ++c) {
         displacement_[c] += dt * velocity_[c];
@@ -132,6 +134,15 @@ void Mechanics::drift(double dt) {
 void Mechanics::respond(double dt, std::span<const double> temperature) {
     compute_forces(dt, temperature);
     kick(0.5 * dt);
+    slow_down(1 / (1 + 0.5 * mass_damping_ * dt));
+}
+
+void Mechanics::slow_down(double factor) {
+    if (mass_damping_ > 0) {
+        for (double& v : velocity_) {
+            v *= factor;
+        }
+    }
 }
 
 Mechanics::Gradient Mechanics::displacement_gradient(std::size_t k, const double* u) const {
@@ -258,28 +269,39 @@ std::span<const double> Mechanics::heating(double dt) {
     if (!heated_) {
         return {};
     }
-    const double factor = -beta_ * reference_temperature_ / dt;
+    latent_heat(displacement_, heating_);
+    for (std::size_t i = 0; i < latent_.size(); ++i) {
+        const double before = latent_[i];
+        latent_[i] = heating_[i];
+        heating_[i] = (before - latent_[i]) / dt;
+    }
+    return heating_;
+}
+
+void Mechanics::latent_heat(std::span<const double> displacement, std::span<double> nodal) {
+    if (!heated_) {
+        std::fill(nodal.begin(), nodal.end(), 0.0);
+        return;
+    }
+    const double factor = beta_ * reference_temperature_;
     in_pieces(domains_.size(), threads_, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
-            const Gradient g = displacement_gradient(k, displacement_.data());
+            const Gradient g = displacement_gradient(k, displacement.data());
             const double trace =
                 g.xx + g.yy + 0.5 * (g.xx * g.xx + g.yx * g.yx + g.xy * g.xy + g.yy * g.yy);
-            const double heat = factor * domains_.area[k] * (trace - trace_[k]);
-            trace_[k] = trace;
+            const double heat = factor * domains_.area[k] * trace;
             for (std::size_t s = 0; s < slots; ++s) {
                 heat_share_[slots * k + s] = heat * domains_.weight[k][s];
             }
         }
     });
-    heating_.resize(mass_.size());
-    gather(heat_share_, heating_.data(), 1);
-    return heating_;
+    gather(heat_share_, nodal.data(), 1);
 }
 
-/// The change of f_int by a small displacement u at the present deformation and stress, with the
-/// temperature that the compression itself brings about: the adiabatic tangent, as the time
-/// stepping sees it (62).
-void Mechanics::apply_tangent(const double* u, double* force) {
+void Mechanics::apply_tangent(const double* u,
+                              double* force,
+                              double material,
+                              const Warming& warming) {
     if (heated_) {
         for (std::size_t k = 0; k < domains_.size(); ++k) {
             const auto e = strain_change(displacement_gradient(k, displacement_.data()),
@@ -290,17 +312,16 @@ void Mechanics::apply_tangent(const double* u, double* force) {
             }
         }
         gather(heat_share_, nodal_change_.data(), 1);
-        for (std::size_t i = 0; i < nodal_change_.size(); ++i) {
-            nodal_change_[i] /= capacity_[i];
-        }
+        warming(nodal_change_);
     }
     for (std::size_t k = 0; k < domains_.size(); ++k) {
         const Gradient g = displacement_gradient(k, displacement_.data());
         const Gradient d = displacement_gradient(k, u);
         const auto e = strain_change(g, d);
-        const double warming = heated_ ? domain_temperature(k, nodal_change_) : 0;
-        const double mean = lambda_ * (e[0] + e[1]) - beta_ * warming;
-        put_force(k, g, mean + 2 * mu_ * e[0], mean + 2 * mu_ * e[1], 2 * mu_ * e[2]);
+        const double warmer = heated_ ? domain_temperature(k, nodal_change_) : 0;
+        const double mean = material * lambda_ * (e[0] + e[1]) - beta_ * warmer;
+        const double twice = 2 * material * mu_;
+        put_force(k, g, mean + twice * e[0], mean + twice * e[1], twice * e[2]);
         // dF S: the stress that is there already, turned with the material.
         const double* s = &stress_[3 * k];
         const double area = domains_.area[k];
@@ -320,9 +341,31 @@ void Mechanics::apply_tangent(const double* u, double* force) {
     }
 }
 
+/// The tangent as the explicit time stepping sees it: the heat of a compression stays on the
+/// nodes (62).
+void Mechanics::apply_adiabatic_tangent(const double* u, double* force) {
+    apply_tangent(u, force, 1, [this](std::vector<double>& nodal) {
+        for (std::size_t i = 0; i < nodal.size(); ++i) {
+            nodal[i] /= capacity_[i];
+        }
+    });
+}
+
+void Mechanics::accept(double dt,
+                       std::span<const double> before,
+                       std::span<const double> velocity) {
+    for (const std::uint32_t c : loaded_) {
+        work_ += interface_[c] * (displacement_[c] - before[c]);
+        impulse_[c % 2] += interface_[c] * dt;
+    }
+    std::copy(velocity.begin(), velocity.end(), velocity_.begin());
+    latent_heat(displacement_, latent_);
+    place();
+}
+
 void Mechanics::update_frequency() {
     const double now = std::sqrt(spectrum_.largest(
-        [this](const double* u, double* f) { apply_tangent(u, f); }, inverse_mass_, 10));
+        [this](const double* u, double* f) { apply_adiabatic_tangent(u, f); }, inverse_mass_, 10));
     // Ten rounds from the last mode may fall a little short of the eigenvalue, so that a fall is
     // taken up by and by.
     frequency_ = std::max(now, 0.99 * frequency_);

@@ -7,6 +7,7 @@
 #include "solid_solver/spectrum.hpp"
 
 #include <array>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -74,7 +75,7 @@ class Mechanics {
         visit(velocity_);
         visit(internal_);
         visit(stress_);
-        visit(trace_);
+        visit(latent_);
         visit(impulse_[0]);
         visit(impulse_[1]);
         visit(work_);
@@ -89,6 +90,23 @@ class Mechanics {
                   std::span<const double> velocity,
                   std::span<const double> temperature,
                   std::span<const double> warming);
+
+    /// nodal_I = beta T0 sum_k A_k w_Ik tr(E), J/m: the heat that the nodes have given to the
+    /// stretching of a motion; its fall is the thermo-elastic heating (31). Zero where the body
+    /// does not heat itself.
+    void latent_heat(std::span<const double> displacement, std::span<double> nodal);
+    std::span<const double> latent_heat() const { return latent_; } ///< of the last whole step
+    bool heats_itself() const { return heated_; }
+    /// What a change of temperature by `nodal` [N] J/m of heat is: [N] K, in place.
+    using Warming = std::function<void(std::vector<double>& nodal)>;
+    /// force = K u: the change of f_int by a small displacement u [N][2] at the motion and stress
+    /// of the last forces, `material` times its material part, with the temperature that the
+    /// compression brings about by `warming`.
+    void apply_tangent(const double* u, double* force, double material, const Warming& warming);
+    /// Ends an implicit step of length dt at the motion of the last evaluate, with `velocity`.
+    void accept(double dt, std::span<const double> before, std::span<const double> velocity);
+    double mass_damping() const { return mass_damping_; } ///< 1/s
+    double stiffness_damping() const { return damping_; } ///< s
 
     /// F - I of a domain: g.ij = du_i/dX_j.
     struct Gradient {
@@ -120,14 +138,15 @@ class Mechanics {
     void put_force(std::size_t domain, const Gradient& g, double sxx, double syy, double sxy);
     void gather(const std::vector<double>& contribution, double* nodal, int components) const;
     void compute_forces(double dt, std::span<const double> temperature);
-    void apply_tangent(const double* u, double* force);
+    void apply_adiabatic_tangent(const double* u, double* force);
     void apply_boundary(const BodyConfig& body);
     void kick(double half_step);
+    void slow_down(double factor);
     void place(); ///< positions from the displacement
 
     const Domains& domains_;
     int threads_;
-    double lambda_, mu_, beta_, reference_temperature_, damping_;
+    double lambda_, mu_, beta_, reference_temperature_, damping_, mass_damping_;
     double heat_capacity_; ///< J/(m3 K)
     bool heated_;          ///< thermo-elastic heating is on and not zero
 
@@ -144,7 +163,7 @@ class Mechanics {
     std::vector<double> displacement_, position_, velocity_;
     std::vector<double> internal_; ///< [N][2] N/m, -(f_int + f_damp) at the last positions
     std::vector<double> stress_;   ///< [K][3] second Piola-Kirchhoff, xx, yy, xy
-    std::vector<double> trace_;    ///< [K] tr(E) at the last call of heating
+    std::vector<double> latent_;   ///< [N] J/m, latent_heat at the last call of heating
     std::array<double, 2> impulse_{};
     double work_ = 0;
     double frequency_ = 0;
