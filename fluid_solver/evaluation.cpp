@@ -27,20 +27,28 @@ PairSums pair_sums(const Particles& particles,
                    std::size_t a,
                    std::span<const PairBlock> pairs,
                    const Weights& laplacian) {
-    PairSums sums;
+    PairSums even, odd; // two chains of additions, which one would wait for
+    const auto add = [](PairSums& sums, float x, float y, const auto& w, const Four& difference) {
+        sums.gradient_x += x * difference;
+        sums.gradient_y += y * difference;
+        sums.laplacian -= w * difference;
+    };
     const Lanes fa = load(particles.fields[a]);
     for (std::size_t b = 0; b < pairs.size(); ++b) {
         const PairBlock& block = pairs[b];
         const auto weights = laplacian(b);
-        for (std::size_t k = 0; k < eight; ++k) {
+        const auto difference = [&](std::size_t k) {
             const Lanes exact = load(particles.fields[block.index[k]]) - fa;
-            const Four difference = __builtin_convertvector(exact, Four);
-            sums.gradient_x += block.x[k] * difference;
-            sums.gradient_y += block.y[k] * difference;
-            sums.laplacian -= weights(k) * difference;
+            return __builtin_convertvector(exact, Four);
+        };
+        for (std::size_t k = 0; k < eight; k += 2) {
+            add(even, block.x[k], block.y[k], weights(k), difference(k));
+            add(odd, block.x[k + 1], block.y[k + 1], weights(k + 1), difference(k + 1));
         }
     }
-    return sums;
+    return {even.gradient_x + odd.gradient_x,
+            even.gradient_y + odd.gradient_y,
+            even.laplacian + odd.laplacian};
 }
 
 /// 2 V F (e.B e) of eight neighbours.
@@ -192,7 +200,7 @@ bool Evaluation::gather(
     // Velocity and temperature have tensors of their own: not every wall is heated, and beside two
     // faces their sums differ from the pressure's.
     const WallSums& w = work.walls;
-    ghosts_.sums(x, scene.boundary, work.contacts, work.walls);
+    ghosts_.sums(scene.boundary, work.contacts, work.walls);
     work.pressure = correction(m, w.N_n);
     s.operators.add(m, w.velocity.S_xi, w.velocity.S_xi_xi, w.velocity);
     if constexpr (Heat) {

@@ -138,53 +138,168 @@ void Ghosts::add_straight(const Boundary& boundary, const Contact& contact, Wall
     sums.C += s.C * n;
 }
 
-void Ghosts::add_direct(Vec2 x,
-                        const Boundary& boundary,
+namespace {
+
+/// Ghosts of one row behind a face, at r = y n + s t: sums of V F s^k over those that belong to the
+/// face, and of V F and V F s times the wall's values where their lines cross it.
+struct Row {
+    double m0 = 0, m1 = 0, m2 = 0, m3 = 0;
+    Lanes value{}, value_s{};
+};
+
+/// Adds what a row gives to the sums of known values, in the face's frame (n, t): q gradW and
+/// 2 V F q times powers of xi = (d1, g s), g = d1/y.
+struct FrameSums {
+    Vec2 S, K_xi;
+    double K = 0;
+    Mat2 S_xi;
+    Third S_xi_xi{};
+    Symmetric K_xi_xi{};
+
+    void add(const Row& row, double q, double y, double d1) {
+        const double g = d1 / y;
+        const double k0 = 2 * q * row.m0, k1 = 2 * q * g * row.m1, k2 = 2 * q * g * g * row.m2;
+        K += k0;
+        K_xi += {d1 * k0, k1};
+        K_xi_xi[0] += d1 * d1 * k0;
+        K_xi_xi[1] += d1 * k1;
+        K_xi_xi[2] += k2;
+        // gradW = -V F (y, s)
+        const double n0 = -q * y * row.m0, n1 = -q * y * g * row.m1, n2 = -q * y * g * g * row.m2;
+        const double t0 = -q * row.m1, t1 = -q * g * row.m2, t2 = -q * g * g * row.m3;
+        S += {n0, t0};
+        S_xi += {d1 * n0, n1, d1 * t0, t1};
+        duet::fluid::add(S_xi_xi[0], 1, {d1 * d1 * n0, d1 * n1, n2});
+        duet::fluid::add(S_xi_xi[1], 1, {d1 * d1 * t0, d1 * t1, t2});
+    }
+};
+
+/// From the frame (n, t) to (x, y).
+Vec2 turned(Vec2 a, const Face& face) {
+    return a.x * face.normal + a.y * face.tangent;
+}
+Symmetric turned(const Symmetric& a, const Face& face) {
+    const Vec2 n = face.normal, t = face.tangent;
+    return {a[0] * n.x * n.x + 2 * a[1] * n.x * t.x + a[2] * t.x * t.x,
+            a[0] * n.x * n.y + a[1] * (n.x * t.y + n.y * t.x) + a[2] * t.x * t.y,
+            a[0] * n.y * n.y + 2 * a[1] * n.y * t.y + a[2] * t.y * t.y};
+}
+
+void add(DirichletSums& sums, const FrameSums& in_frame, const Face& face) {
+    const Vec2 n = face.normal, t = face.tangent;
+    sums.S += turned(in_frame.S, face);
+    sums.K += in_frame.K;
+    sums.S_xi += outer(n, turned(Vec2{in_frame.S_xi.xx, in_frame.S_xi.xy}, face));
+    sums.S_xi += outer(t, turned(Vec2{in_frame.S_xi.yx, in_frame.S_xi.yy}, face));
+    const Symmetric along_n = turned(in_frame.S_xi_xi[0], face);
+    const Symmetric along_t = turned(in_frame.S_xi_xi[1], face);
+    add(sums.S_xi_xi[0], n.x, along_n);
+    add(sums.S_xi_xi[0], t.x, along_t);
+    add(sums.S_xi_xi[1], n.y, along_n);
+    add(sums.S_xi_xi[1], t.y, along_t);
+    sums.K_xi += turned(in_frame.K_xi, face);
+    add(sums.K_xi_xi, 1, turned(in_frame.K_xi_xi, face));
+}
+
+/// Most ghosts of a row: 2 (R / (dx/3) + 1).
+constexpr int most_columns = 20;
+using Columns = std::array<double, most_columns>;
+
+/// Takes from the shares of a row's ghosts, at (y, s), those whose lines cross `other` before the
+/// face of `own`; on a tie, half.
+void give_away(
+    const Contact& own, const Contact& other, double y, const Columns& s, Columns& share) {
+    const Vec2 n = own.face->normal, t = own.face->tangent;
+    const double ny = dot(other.face->normal, n) * y, nt = dot(other.face->normal, t);
+    const double ty = dot(other.face->tangent, n) * y, tt = dot(other.face->tangent, t);
+    const double fraction = own.distance / y, distance = other.distance;
+    const double foot = other.foot, length = other.face->length;
+#pragma omp simd
+    for (std::size_t i = 0; i < most_columns; ++i) {
+        const double reach = ny + nt * s[i]; // along the other's normal
+        const double theirs = distance / reach;
+        const double arc = foot + theirs * (ty + tt * s[i]), slack = 1e-9 * reach;
+        const bool crosses = (reach > distance) & (arc >= -slack) & (arc <= length + slack);
+        const double kept = theirs < fraction - 1e-9 ? 0 : (theirs < fraction + 1e-9 ? 0.5 : 1);
+        share[i] *= crosses ? kept : 1;
+    }
+}
+
+} // namespace
+
+/// Row by row: only the ghosts' share and V F differ along a row, all else follows from its sums.
+void Ghosts::add_direct(const Boundary& boundary,
                         const Contact& contact,
                         const std::vector<Contact>& all,
                         WallSums& sums) const {
     const Face& face = *contact.face;
     const double R = kernel_.support(), d1 = contact.distance;
     const double least = std::max(d1, least_distance_);
-    const int columns = static_cast<int>(R / lattice_) + 1;
-    Vec2 N;
-    for (double d2 = lattice_ / 2; d1 + d2 < R; d2 += lattice_) {
-        for (int i = -columns; i < columns; ++i) {
-            const double along = (i + 0.5) * lattice_;
-            const double square = (d1 + d2) * (d1 + d2) + along * along;
-            if (square >= R * R) {
-                continue;
-            }
-            // The ghost belongs to the face that the line to it crosses first; on a tie, by halves.
-            const Vec2 r = (d1 + d2) * face.normal + along * face.tangent;
-            const double fraction = crossing(contact, r);
-            double share = fraction > 1 ? 0 : 1;
-            for (const Contact& other : all) {
-                const double theirs = &other == &contact ? 2 : crossing(other, r);
-                if (theirs < fraction - 1e-9) {
-                    share = 0;
-                } else if (theirs < fraction + 1e-9) {
-                    share *= 0.5;
-                }
-            }
-            if (share == 0) {
-                continue;
-            }
-            const double VF = share * volume_ * kernel_.slope_over_r(std::sqrt(square));
-            const double q = 1 + d2 / least;
-            const Vec2 gradW = -VF * r;
-            const Vec2 xi = fraction * r;
-            const WallPoint wall = boundary.at(face, dot(x + xi - face.a, face.tangent));
-            add_values(face, wall, q * gradW, 2 * VF * q, xi, sums);
-            N += (d1 + d2) * gradW;
-            sums.C += gradW;
-        }
+    Columns s, share, VF;
+    for (std::size_t i = 0; i < most_columns; ++i) {
+        s[i] = (static_cast<double>(i) - most_columns / 2 + 0.5) * lattice_;
     }
-    add_slopes(contact, boundary.at(face, contact.foot).acceleration, N, sums);
+    // One segment's values are linear along it.
+    const bool linear = face.segments == 1;
+    const Lanes at_start = boundary.at(face, 0).value;
+    const Lanes slope = (1 / face.length) * (boundary.at(face, face.length).value - at_start);
+    const Lanes at_foot = at_start + contact.foot * slope;
+    FrameSums in_frame;
+    Vec2 N;
+    Lanes value_n{}, value_t{}, K_value{};
+    for (double d2 = lattice_ / 2; d1 + d2 < R; d2 += lattice_) {
+        const double y = d1 + d2, g = d1 / y, slack = 1e-9 * y;
+#pragma omp simd
+        for (std::size_t i = 0; i < most_columns; ++i) {
+            const double square = y * y + s[i] * s[i], arc = contact.foot + g * s[i];
+            const bool mine = (square < R * R) & (arc >= -slack) & (arc <= face.length + slack);
+            share[i] = mine ? 1 : 0;
+            VF[i] = volume_ * kernel_.slope_over_r(std::sqrt(square));
+        }
+        for (const Contact& other : all) {
+            if (&other != &contact) {
+                give_away(contact, other, y, s, share);
+            }
+        }
+        Row row;
+        for (std::size_t i = 0; i < most_columns; ++i) {
+            const double w = share[i] * VF[i];
+            row.m0 += w;
+            row.m1 += w * s[i];
+            row.m2 += w * s[i] * s[i];
+            row.m3 += w * s[i] * s[i] * s[i];
+            if (!linear && w != 0) {
+                const Lanes value = boundary.at(face, contact.foot + g * s[i]).value;
+                row.value += w * value;
+                row.value_s += w * s[i] * value;
+            }
+        }
+        if (linear) {
+            row.value = row.m0 * at_foot + g * row.m1 * slope;
+            row.value_s = row.m1 * at_foot + g * row.m2 * slope;
+        }
+        const double q = 1 + d2 / least;
+        in_frame.add(row, q, y, d1);
+        value_n -= q * y * row.value;
+        value_t -= q * row.value_s;
+        K_value += 2 * q * row.value;
+        const Vec2 gradW{-y * row.m0, -row.m1};
+        N += y * gradW;
+        sums.C += turned(gradW, face);
+    }
+    add(sums.velocity, in_frame, face);
+    if (face.heated) {
+        add(sums.temperature, in_frame, face);
+    } else {
+        value_n[3] = value_t[3] = K_value[3] = 0;
+    }
+    sums.Sx_value += face.normal.x * value_n + face.tangent.x * value_t;
+    sums.Sy_value += face.normal.y * value_n + face.tangent.y * value_t;
+    sums.K_value += K_value;
+    add_slopes(contact, boundary.at(face, contact.foot).acceleration, turned(N, face), sums);
 }
 
-void Ghosts::sums(Vec2 x,
-                  const Boundary& boundary,
+void Ghosts::sums(const Boundary& boundary,
                   const std::vector<Contact>& contacts,
                   WallSums& sums) const {
     sums = WallSums{};
@@ -192,7 +307,7 @@ void Ghosts::sums(Vec2 x,
         if (spans(contact, contacts)) {
             add_straight(boundary, contact, sums);
         } else {
-            add_direct(x, boundary, contact, contacts, sums);
+            add_direct(boundary, contact, contacts, sums);
         }
     }
 }

@@ -61,11 +61,8 @@ class Ghosts {
   public:
     explicit Ghosts(double spacing);
 
-    /// Adds up over all faces that the particle at x sees. Zero without contacts.
-    void sums(Vec2 x,
-              const Boundary& boundary,
-              const std::vector<Contact>& contacts,
-              WallSums& sums) const;
+    /// Adds up over all faces that a particle sees. Zero without contacts.
+    void sums(const Boundary& boundary, const std::vector<Contact>& contacts, WallSums& sums) const;
 
     /// Whether the line from the particle to the point at x + r is cut by one of the faces it sees.
     static bool hidden(const std::vector<Contact>& contacts, Vec2 r);
@@ -85,8 +82,7 @@ class Ghosts {
     Straight direct(double d1) const;
     bool spans(const Contact& contact, const std::vector<Contact>& all) const;
     void add_straight(const Boundary& boundary, const Contact& contact, WallSums& sums) const;
-    void add_direct(Vec2 x,
-                    const Boundary& boundary,
+    void add_direct(const Boundary& boundary,
                     const Contact& contact,
                     const std::vector<Contact>& all,
                     WallSums& sums) const;

@@ -79,7 +79,7 @@ void compare(const Boundary& boundary, Place place, const std::vector<Vec2>& pla
         ASSERT_TRUE(boundary.contains(x));
         WallSums got{};
         boundary.contacts(x, contacts);
-        ghosts.sums(x, boundary, contacts, got);
+        ghosts.sums(boundary, contacts, got);
         const WallSums expected = twin(x, boundary, place);
         SCOPED_TRACE("particle at " + std::to_string(x.x) + ", " + std::to_string(x.y));
         const double scale = 0.02;
