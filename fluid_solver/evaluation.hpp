@@ -30,6 +30,7 @@ struct WallTerms {
     Vec2 L_N_acceleration; ///< its part that comes from the walls' acceleration
     Vec2 L_S;              ///< div v of the walls: value - v_a . L S
     double value = 0;      ///< sum v_wall . L S
+    float softness = 1;    ///< the share of c^2 that the particle's own stiffness allows
 };
 
 /// A particle in the layer next to a wall from which flux and traction are taken.

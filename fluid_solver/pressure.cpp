@@ -75,19 +75,20 @@ void Pressure::compress(const Evaluation& evaluation, const InnerSteps& inner, s
         }
     }
     const Four sx = x0 + x1, sy = y0 + y1;
+    const auto c = static_cast<float>(inner.sound_speed);
+    auto stiffness = static_cast<float>(inner.density) * c * c;
     float divergence = 0;
     if (const WallTerms* wall = evaluation.wall(a)) {
         const Correction& L = wall->L_velocity;
         divergence = L.xx * sx[0] + L.xy * sy[0] + L.yx * sx[1] + L.yy * sy[1]
                      + static_cast<float>(wall->value - own.u * wall->L_S.x - own.v * wall->L_S.y);
+        stiffness *= wall->softness;
     } else {
         const Correction& L = evaluation.L[a];
         divergence = L.xx * sx[0] + L.xy * sy[0] + L.yx * sx[1] + L.yy * sy[1];
     }
     const WeightSum& w = evaluation.weight_sum[a];
     const float psi = 2 * curvature_[a] - (sx[2] + sy[3]) - 2 * (w.x * own.px + w.y * own.py);
-    const auto c = static_cast<float>(inner.sound_speed);
-    const auto stiffness = static_cast<float>(inner.density) * c * c;
     const auto h = static_cast<float>(inner.smoothing_length);
     next_p_[a] = p_[a]
                  + static_cast<float>(inner.step)
