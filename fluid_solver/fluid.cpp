@@ -13,7 +13,7 @@ namespace {
 
 constexpr double courant_flow = 0.3;       ///< of dx/U, outer step
 constexpr double courant_diffusion = 0.15; ///< of dx^2/max(nu, alpha), outer step
-constexpr double courant_sound = 1.5;      ///< of dx/c, inner step (stable to 2.0)
+constexpr double courant_sound = 1.65;     ///< of dx/c, inner step (stable to 2.0)
 constexpr double step_tolerance = 1.05;    ///< over the outer limit rather than twice the steps
 
 enum PhaseIndex { moving, sorting, evaluating, inner_steps, walls_and_closure };
