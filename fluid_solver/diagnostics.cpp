@@ -46,15 +46,22 @@ class LocalFit {
         right_ += weight * value * row;
         ++points_;
     }
-    double value() const {
+    /// The polynomial's value and gradient at the point.
+    struct Result {
+        double value;
+        Vec2 slope;
+    };
+    Result result() const {
         for (const int terms : {6, 3, 1}) {
             const Eigen::MatrixXd matrix = normal_.topLeftCorner(terms, terms);
             const Eigen::LDLT<Eigen::MatrixXd> factor(matrix);
             if (points_ >= terms && factor.rcond() > 1e-10) {
-                return factor.solve(right_.head(terms))[0];
+                const Eigen::VectorXd c = factor.solve(right_.head(terms));
+                return {c[0], terms > 1 ? (1 / scale_) * Vec2{c[1], c[2]} : Vec2{}};
             }
         }
-        return std::numeric_limits<double>::quiet_NaN();
+        const double nan = std::numeric_limits<double>::quiet_NaN();
+        return {nan, {nan, nan}};
     }
 
   private:
@@ -67,9 +74,14 @@ class LocalFit {
 } // namespace
 
 Values Fluid::Implementation::at(Vec2 point) const {
-    const double nan = std::numeric_limits<double>::quiet_NaN();
-    if (!boundary_.contains(point)) {
-        return {nan, {nan, nan}, nan};
+    // A point on a wall is taken just before it.
+    const double skin = 1e-3 * config.spacing;
+    if (const auto wall = boundary_.nearest(point);
+        wall.face != nullptr && std::abs(wall.distance) < skin) {
+        point = wall.point - skin * wall.face->normal;
+    } else if (!boundary_.contains(point)) {
+        const double nan = std::numeric_limits<double>::quiet_NaN();
+        return {nan, {nan, nan}, nan, {nan, nan}};
     }
     const Kernel& kernel = evaluation_.kernel();
     const double R = kernel.support();
@@ -115,7 +127,11 @@ Values Fluid::Implementation::at(Vec2 point) const {
             }
         }
     }
-    return {T.value(), {u.value(), v.value()}, p.value()};
+    const LocalFit::Result temperature = T.result();
+    return {temperature.value,
+            {u.result().value, v.result().value},
+            p.result().value,
+            temperature.slope};
 }
 
 Snapshot Fluid::Implementation::snapshot() const {

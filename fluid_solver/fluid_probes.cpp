@@ -13,7 +13,7 @@ namespace {
 struct Field {
     const char* name;
     bool odd; ///< changes sign in a vertical mirror
-    double (*value)(const Values&);
+    double (*value)(const Values&, const v1::Probe&, const v1::Scene&);
 };
 
 struct Integral {
@@ -24,14 +24,6 @@ struct Integral {
 struct WallQuantity {
     const char* name;
     double (*value)(const WallReport&, const v1::Scene&);
-};
-
-constexpr Field fields[] = {
-    {"temperature", false, [](const Values& f) { return f.temperature; }},
-    {"velocity_x", true, [](const Values& f) { return f.velocity.x; }},
-    {"velocity_y", false, [](const Values& f) { return f.velocity.y; }},
-    {"speed", false, [](const Values& f) { return norm(f.velocity); }},
-    {"pressure", false, [](const Values& f) { return f.pressure; }},
 };
 
 constexpr Integral integrals[] = {
@@ -63,6 +55,41 @@ double nusselt(const WallReport& wall, const v1::Scene& scene) {
     return std::abs(wall.heat_flow)
            / (scene.fluid().conductivity() * wall_temperature_difference(scene));
 }
+
+/// rho c v (T - T_ref) - k grad T, W/m2. (The reference matters only where mass crosses a line.)
+Vec2 heat_flux(const Values& f, const v1::Fluid& fluid) {
+    const double carried =
+        fluid.density() * fluid.heat_capacity() * (f.temperature - fluid.reference_temperature());
+    return carried * f.velocity - fluid.conductivity() * f.temperature_slope;
+}
+
+/// (66) at a point of a line: heat flux to the line's right over conduction across a cavity as wide
+/// as the line is long. Its mean over the line is the line's Nusselt number.
+double nusselt_across(const Values& f, const v1::Probe& probe, const v1::Scene& scene) {
+    const Vec2 along{probe.line(1).x() - probe.line(0).x(), probe.line(1).y() - probe.line(0).y()};
+    return dot(heat_flux(f, scene.fluid()), -left(along))
+           / (scene.fluid().conductivity() * wall_temperature_difference(scene));
+}
+
+using Probe = v1::Probe;
+using Scene = v1::Scene;
+
+constexpr Field fields[] = {
+    {"temperature",
+     false,
+     [](const Values& f, const Probe&, const Scene&) { return f.temperature; }},
+    {"velocity_x", true, [](const Values& f, const Probe&, const Scene&) { return f.velocity.x; }},
+    {"velocity_y", false, [](const Values& f, const Probe&, const Scene&) { return f.velocity.y; }},
+    {"speed", false, [](const Values& f, const Probe&, const Scene&) { return norm(f.velocity); }},
+    {"pressure", false, [](const Values& f, const Probe&, const Scene&) { return f.pressure; }},
+    {"heat_flux_x",
+     true,
+     [](const Values& f, const Probe&, const Scene& s) { return heat_flux(f, s.fluid()).x; }},
+    {"heat_flux_y",
+     false,
+     [](const Values& f, const Probe&, const Scene& s) { return heat_flux(f, s.fluid()).y; }},
+    {"nusselt", false, nusselt_across},
+};
 
 constexpr WallQuantity wall_quantities[] = {
     {"heat_flow", [](const WallReport& w, const v1::Scene&) { return w.heat_flow; }},
@@ -101,11 +128,28 @@ const WallReport& wall_named(const v1::Probe& probe, const Fluid& fluid) {
                      + "\", which the fluid does not have; name a [[fluid.wall]].");
 }
 
+void check_nusselt(const v1::Probe& probe, const v1::Scene& scene) {
+    if (probe.quantity() != "nusselt") {
+        return;
+    }
+    if (!(wall_temperature_difference(scene) > 0 && scene.fluid().conductivity() > 0)) {
+        throw SceneError("Probe \"" + probe.name()
+                         + "\": a Nusselt number needs two walls of different temperature and "
+                           "a fluid that conducts.");
+    }
+    if (probe.wall().empty() && (probe.line_size() != 2 || probe.has_mirror())) {
+        throw SceneError("Probe \"" + probe.name()
+                         + "\": a Nusselt number is that of a wall or across a line, without a "
+                           "mirror.");
+    }
+}
+
 } // namespace
 
 void check_probe(const v1::Probe& probe, const v1::Scene& scene, const Fluid& fluid) {
     if (protocol::is_field_probe(probe)) {
         require_known(fields, probe, "at points");
+        check_nusselt(probe, scene);
         if (take_probe(probe, scene, fluid).value().empty()) {
             throw SceneError("Probe \"" + probe.name()
                              + "\" lies outside the fluid; move it into the fluid's region, clear "
@@ -114,12 +158,7 @@ void check_probe(const v1::Probe& probe, const v1::Scene& scene, const Fluid& fl
     } else if (!probe.wall().empty()) {
         require_known(wall_quantities, probe, "on a wall");
         wall_named(probe, fluid);
-        if (probe.quantity() == "nusselt"
-            && !(wall_temperature_difference(scene) > 0 && scene.fluid().conductivity() > 0)) {
-            throw SceneError("Probe \"" + probe.name()
-                             + "\": a Nusselt number needs two walls of different temperature and "
-                               "a fluid that conducts.");
-        }
+        check_nusselt(probe, scene);
     } else {
         require_known(integrals, probe, "over the domain");
     }
@@ -130,7 +169,7 @@ v1::Sample take_probe(const v1::Probe& probe, const v1::Scene& scene, const Flui
         const auto& field = *find(fields, probe.quantity());
         std::vector<double> values;
         for (const auto& point : protocol::probe_points(probe)) {
-            values.push_back(field.value(fluid.at({point.x(), point.y()})));
+            values.push_back(field.value(fluid.at({point.x(), point.y()}), probe, scene));
         }
         return protocol::field_sample(probe, fluid.time(), values, field.odd);
     }

@@ -72,6 +72,7 @@ class Checker {
     void check_probe(const v1::Probe& probe, const std::string& path);
     void check_place(const v1::Probe& probe, const Point& p, const std::string& path);
     void check_check(const v1::Check& check, const std::string& path);
+    void check_mean(const v1::Check& check, const v1::Probe* probe, const std::string& path);
     void check_quantity(const v1::Check& check, const v1::Probe* probe, const std::string& path);
     void check_reference(const v1::Check& check, const v1::Probe* probe, const std::string& path);
     const v1::Probe* find_probe(const std::string& name) const;
@@ -296,12 +297,33 @@ void Checker::check_check(const v1::Check& check, const std::string& path) {
             problem(entry(path + ".at", i),
                     "the time " + number_text(check.at(i)) + " lies outside the run, 0 to "
                         + number_text(scene_.time().end()) + " s");
+    check_mean(check, probe, path);
     if (check.has_value() == !check.reference().empty())
         return problem(path, "a check needs either a 'value' or a 'reference' with its 'column'");
     if (check.norm() == v1::Check::RELATIVE && check.value() == 0 && check.has_value())
         problem(path + ".norm", "an error cannot be relative to 0; take the norm \"absolute\"");
     if (!check.reference().empty())
         check_reference(check, probe, path);
+}
+
+/// A mean over time is that of a probe, and ends after it begins.
+void Checker::check_mean(const v1::Check& check, const v1::Probe* probe, const std::string& path) {
+    if (!check.has_mean_from())
+        return;
+    double first = scene_.time().end();
+    for (const double t : check.at())
+        first = std::min(first, t);
+    if (check.mean_from() > first)
+        problem(path + ".mean_from",
+                path + ".mean_from lies after the time at which the check is held, "
+                    + number_text(first) + " s");
+    const bool profile = probe && probe->line_size() > 0 && probe->reduce() == v1::Probe::EACH;
+    const bool whole = check.norm() == v1::Check::RMS || check.norm() == v1::Check::MAXIMUM;
+    if (!probe || (whole && !profile))
+        problem(
+            path + ".mean_from",
+            "a mean over time is taken of a probe; with the norm \"rms\" or \"maximum\", of one "
+            "that is a line");
 }
 
 /// It names something that the run measures, and the norm fits what is measured.

@@ -83,6 +83,7 @@ class Judge {
   private:
     Pairs figure(const v1::Check& check) const;
     Pairs at_time(const v1::Check& check, const v1::Probe& probe, double time) const;
+    Pairs mean_until(const v1::Check& check, const v1::Probe& probe, double time) const;
     Pairs over_times(const v1::Check& check, const v1::Probe& probe) const;
 
     const v1::Scene& scene_;
@@ -129,6 +130,33 @@ Pairs Judge::at_time(const v1::Check& check, const v1::Probe& probe, double time
         pairs.reference.push_back(reference.at(profile.position[j]));
     }
     return pairs;
+}
+
+/// The mean of the records from check.mean_from to `time`, a profile's point by point.
+Pairs Judge::mean_until(const v1::Check& check, const v1::Probe& probe, double time) const {
+    const double slack = 1e-8 * scene_.time().end();
+    std::vector<double> times;
+    const auto take = [&](double t) {
+        if (t >= check.mean_from() - slack && t <= time + slack)
+            times.push_back(t);
+    };
+    if (const auto found = result_.histories.find(probe.name()); found != result_.histories.end())
+        for (const double t : found->second.time)
+            take(t);
+    if (const auto found = result_.profiles.find(probe.name()); found != result_.profiles.end())
+        for (const Profile& profile : found->second)
+            take(profile.time);
+    Pairs sum = at_time(check, probe, time);
+    std::fill(sum.value.begin(), sum.value.end(), 0.0);
+    for (const double t : times) {
+        const Pairs one = at_time(check, probe, t);
+        if (one.value.size() != sum.value.size())
+            throw std::runtime_error(
+                "the line's points in the domain changed in the time of the mean");
+        for (std::size_t i = 0; i < sum.value.size(); ++i)
+            sum.value[i] += one.value[i] / static_cast<double>(times.size());
+    }
+    return sum;
 }
 
 /// A history as a whole: at the times named, or else wherever it was recorded after the start and
@@ -184,7 +212,11 @@ void Judge::judge(const v1::Check& check, std::vector<Verdict>& out) const {
     if (times.empty())
         times.push_back(scene_.time().end());
     for (const double time : times)
-        add(" at " + number_text(time) + " s", [&] { return at_time(check, *probe, time); });
+        if (check.has_mean_from())
+            add(", mean of " + number_text(check.mean_from()) + " to " + number_text(time) + " s",
+                [&] { return mean_until(check, *probe, time); });
+        else
+            add(" at " + number_text(time) + " s", [&] { return at_time(check, *probe, time); });
 }
 
 std::string cell(const char* pattern, double value) {
