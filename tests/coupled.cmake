@@ -9,6 +9,7 @@ endfunction()
 
 if(TARGET duet AND TARGET duet-solid AND TARGET duet-fluid)
     duet_case(hot_plate hot_plate --set fluid.spacing=0.125 --set solid.body[0].element_size=0.0625)
+    duet_case(heated_cavity heated_cavity/Ra1e5.toml)
     duet_case(two_layers two_layers)
     duet_case(two_layers_conductive two_layers/conductive.toml)
     duet_case(two_layers_equal two_layers/equal.toml)

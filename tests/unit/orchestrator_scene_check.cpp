@@ -197,6 +197,10 @@ TEST_F(Checks, GoodOnesPass) {
 
 TEST_F(Checks, Faults) {
     const std::string of_p = "quantity = 'p'\n";
+    expect_fault_with("quantity = 'p'\nvalue = 0\nmean_from = 0.5\nat = [0.9, 0.4]\n",
+                      "lies after the time at which the check is held, 0.4 s");
+    expect_fault_with("quantity = 'heat_balance'\nvalue = 0\nmean_from = 0.5\n",
+                      "a mean over time is taken of a probe");
     expect_fault_with("quantity = 'heat_ballance'\nvalue = 0\n", "did you mean 'heat_balance'?");
     expect_fault_with("quantity = 'heat_balance'\nvalue = 0\nat = [1]\n",
                       "belongs to the whole run");

@@ -103,6 +103,22 @@ TEST_F(Verify, AlongALine) {
     EXPECT_EQ(only().error, 2);
 }
 
+TEST_F(Verify, MeanOverTimeOfAHistory) {
+    v1::Check& one = check("scalar", v1::Check::ABSOLUTE, 0.5);
+    one.set_value(12);
+    one.set_mean_from(2.5);
+    EXPECT_EQ(only().quantity, "scalar, mean of 2.5 to 10 s");
+    EXPECT_EQ(only().value, 12.25) << "without the record at the start";
+    EXPECT_EQ(only().error, 0.25);
+}
+
+TEST_F(Verify, MeanOverTimeOfALineIsTakenPointByPoint) {
+    result_.profiles["line"].insert(result_.profiles["line"].begin(), {5, {0, 5, 10}, {1, 8, 24}});
+    v1::Check& one = against(check("line", v1::Check::MAXIMUM, 2), "ramp");
+    one.set_mean_from(4);
+    EXPECT_EQ(only().error, 1) << "1, 9 and 21 beside 0, 10 and 20";
+}
+
 TEST_F(Verify, FiguresOfTheAuditAndOfALedger) {
     check("heat_balance", v1::Check::ABSOLUTE, 1e-12).set_value(0);
     check("fluid.particles_outside", v1::Check::ABSOLUTE, 0).set_value(0);
