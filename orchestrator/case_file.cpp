@@ -303,7 +303,10 @@ void Reader::read_text(const toml::node& node,
             return;
         text = *found;
     }
-    m.GetReflection()->SetString(&m, &field, text);
+    if (field.is_repeated())
+        m.GetReflection()->AddString(&m, &field, text);
+    else
+        m.GetReflection()->SetString(&m, &field, text);
 }
 
 std::optional<std::string> Reader::existing_file(const std::string& text, const std::string& path) {

@@ -39,7 +39,20 @@ double diffusivity(double conductivity, double density, double heat_capacity) {
     return conductivity / (density * heat_capacity);
 }
 
+/// What the scene itself tells of a body's area, m2; a mesh file's is known to the solid alone.
+double area_of(const v1::Body& body) {
+    const double pi = std::acos(-1.0);
+    if (body.has_rectangle())
+        return body.rectangle().width() * body.rectangle().height();
+    const double outer = body.has_disc() ? body.disc().radius() : body.ring().outer_radius();
+    return pi * (outer * outer - body.ring().inner_radius() * body.ring().inner_radius());
+}
+
+/// Nodes of a body; a triangulation has one for each square of the elements' size.
 double nodes_of(const v1::Body& body) {
+    if (!body.has_rectangle())
+        return body.element_size() > 0 ? area_of(body) / (body.element_size() * body.element_size())
+                                       : 0;
     const double across = std::max(1.0, std::round(body.rectangle().width() / body.element_size()));
     const double up = std::max(1.0, std::round(body.rectangle().height() / body.element_size()));
     return (across + 1) * (up + 1);
@@ -48,7 +61,7 @@ double nodes_of(const v1::Body& body) {
 double solid_area(const v1::Scene& scene) {
     double sum = 0;
     for (const v1::Body& body : scene.solid().body())
-        sum += body.rectangle().width() * body.rectangle().height();
+        sum += area_of(body);
     return sum;
 }
 
@@ -80,12 +93,18 @@ std::vector<double> temperatures(const v1::Scene& scene) {
         add_values(body.initial_temperature(), all);
         for (const v1::Boundary& boundary : body.boundary()) {
             if (boundary.has_temperature())
-                all.push_back(boundary.temperature());
+                add_values(boundary.temperature(), all);
             if (boundary.has_convection())
-                all.push_back(boundary.convection().temperature());
+                add_values(boundary.convection().temperature(), all);
         }
     }
     return all;
+}
+
+bool is_zero(const v1::Function& function) {
+    std::vector<double> values;
+    add_values(function, values);
+    return std::all_of(values.begin(), values.end(), [](double v) { return v == 0; });
 }
 
 bool heat_released(const v1::Scene& scene) {
@@ -93,7 +112,7 @@ bool heat_released(const v1::Scene& scene) {
         if (body.heat_source() != 0)
             return true;
         for (const v1::Boundary& boundary : body.boundary())
-            if (boundary.heat_flux() != 0)
+            if (!is_zero(boundary.heat_flux()))
                 return true;
     }
     return false;
@@ -163,8 +182,11 @@ void describe_fluid(const v1::Scene& scene, const Estimate& e, std::string& out)
 void describe_solid(const v1::Scene& scene, const Estimate& e, std::string& out) {
     for (const v1::Body& body : scene.solid().body()) {
         const bool moves = body.motion() == v1::Body::DEFORMABLE;
-        out += "solid   body '" + body.name() + "': " + count(nodes_of(body)) + " nodes, edge "
-               + number_text(body.element_size()) + " m; mechanics: "
+        out += "solid   body '" + body.name() + "': "
+               + (body.mesh().empty() ? count(nodes_of(body)) + " nodes, edge "
+                                            + number_text(body.element_size()) + " m"
+                                      : "mesh " + body.mesh())
+               + "; mechanics: "
                + (moves ? "thermo-elastic, finite deformation" : "left out (fixed and rigid)")
                + "; heat: " + (e.heat ? "conduction" : "left out (one temperature everywhere)")
                + "\n";
@@ -179,6 +201,8 @@ void describe_coupling(const v1::Scene& scene, const Estimate& e, std::string& o
                "schedule"))[static_cast<std::size_t>(scene.coupling().schedule())]
            + ", windows of about " + number(e.window) + " s\n";
     for (const v1::Body& body : scene.solid().body()) {
+        if (body.element_size() == 0)
+            continue; // the solid reports its limits when it has read the mesh
         if (e.heat && fluid.conductivity() > 0) {
             // The first layer of the solid must not overshoot:
             // rho_s c_s dx_s / 2 > window k_f / (0.5 dx).
@@ -220,6 +244,8 @@ void describe_cost(const v1::Scene& scene,
         for (const v1::Body& body : scene.solid().body()) {
             nodes += nodes_of(body);
             const double h = body.element_size();
+            if (h == 0)
+                continue; // a mesh file tells its sizes to the solid alone
             const double alpha =
                 diffusivity(body.conductivity(), body.density(), body.heat_capacity());
             if (e.heat && alpha > 0)

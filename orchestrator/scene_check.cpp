@@ -32,13 +32,21 @@ bool shortened(const Case& given) {
     return given.places.find("time.end").source.starts_with("--set");
 }
 
+bool is_zero(const v1::Function& function) {
+    return !function.has_formula() && !function.has_table() && function.number() == 0;
+}
+
 class Checker {
   public:
     explicit Checker(const Case& given) : case_(given), scene_(given.scene) {
         region_.assign(scene_.fluid().region().begin(), scene_.fluid().region().end());
         double size = region_.empty() ? 0 : extent(region_);
         for (const v1::Body& body : scene_.solid().body())
-            size = std::max({size, body.rectangle().width(), body.rectangle().height()});
+            size = std::max({size,
+                             body.rectangle().width(),
+                             body.rectangle().height(),
+                             body.disc().radius(),
+                             body.ring().outer_radius()});
         tolerance_ = 1e-9 * size;
     }
 
@@ -66,9 +74,10 @@ class Checker {
     void check_wall(const v1::Wall& wall, const std::string& path);
     void check_bodies();
     void check_body(const v1::Body& body, const std::string& path);
-    void check_boundary(const v1::Boundary& boundary,
-                        const v1::Rectangle& rectangle,
-                        const std::string& path);
+    void check_shape(const v1::Body& body, const std::string& path);
+    void check_rectangle(const v1::Body& body, const std::string& path);
+    void
+    check_boundary(const v1::Boundary& boundary, const v1::Body& body, const std::string& path);
     void check_probe(const v1::Probe& probe, const std::string& path);
     void check_place(const v1::Probe& probe, const Point& p, const std::string& path);
     void check_check(const v1::Check& check, const std::string& path);
@@ -179,7 +188,8 @@ void Checker::check_bodies() {
     for (int i = 0; i < bodies.size(); ++i) {
         check_body(bodies.Get(i), entry("solid.body", i));
         for (int j = 0; j < i; ++j)
-            if (overlap(bodies.Get(i).rectangle(), bodies.Get(j).rectangle(), tolerance_))
+            if (bodies.Get(i).has_rectangle() && bodies.Get(j).has_rectangle()
+                && overlap(bodies.Get(i).rectangle(), bodies.Get(j).rectangle(), tolerance_))
                 problem(entry("solid.body", i) + ".rectangle",
                         "the bodies '" + bodies.Get(j).name() + "' and '" + bodies.Get(i).name()
                             + "' overlap");
@@ -187,6 +197,48 @@ void Checker::check_bodies() {
 }
 
 void Checker::check_body(const v1::Body& body, const std::string& path) {
+    check_shape(body, path);
+    const bool moving = body.initial_velocity().x() != 0 || body.initial_velocity().y() != 0;
+    if (body.motion() == v1::Body::FIXED && moving)
+        problem(path + ".initial_velocity",
+                "a body with motion = \"fixed\" cannot have a velocity; did you mean motion = "
+                "\"deformable\"?");
+    if (body.motion() == v1::Body::DEFORMABLE && !body.has_youngs_modulus())
+        problem(path, "the deformable body '" + body.name() + "' lacks the key 'youngs_modulus'");
+    check_names(path + ".boundary", body.boundary());
+    for (int i = 0; i < body.boundary_size(); ++i)
+        check_boundary(body.boundary(i), body, entry(path + ".boundary", i));
+}
+
+/// A body has one shape, with what belongs to it. What a mesh file holds is the solid's to check.
+void Checker::check_shape(const v1::Body& body, const std::string& path) {
+    const std::string& mesh = body.mesh();
+    const int shapes = body.has_rectangle() + body.has_disc() + body.has_ring() + !mesh.empty();
+    if (shapes != 1)
+        return problem(path,
+                       "the body '" + body.name() + "' needs one shape: rectangle, disc, ring, or "
+                           + (shapes == 0 ? "mesh" : "mesh, not several"));
+    if (mesh.empty() && !body.has_element_size())
+        problem(path, "the body '" + body.name() + "' lacks the key 'element_size'");
+    if (mesh.empty() && (body.part_size() > 0 || body.material_size() > 0))
+        problem(path, "only a body with a 'mesh' has parts and materials of their own");
+    if (!mesh.empty() && !mesh.ends_with(".msh") && !mesh.ends_with(".geo"))
+        problem(path + ".mesh", "a mesh is a .msh file, or a .geo file that gmsh meshes");
+    if (mesh.ends_with(".msh") && body.has_element_size())
+        problem(path + ".element_size",
+                "a .msh file has its own elements; leave element_size out, or give a .geo file");
+    for (int i = 0; i < body.material_size(); ++i)
+        for (int j = 0; j < i; ++j)
+            if (body.material(i).part() == body.material(j).part())
+                problem(entry(path + ".material", i) + ".part",
+                        "the part '" + body.material(i).part() + "' has a material already");
+    if (body.has_ring() && body.ring().inner_radius() >= body.ring().outer_radius())
+        problem(path + ".ring", path + ".ring needs an inner radius smaller than its outer one");
+    if (body.has_rectangle())
+        check_rectangle(body, path);
+}
+
+void Checker::check_rectangle(const v1::Body& body, const std::string& path) {
     const v1::Rectangle& rectangle = body.rectangle();
     if (region_good_ && !rectangle_inside(rectangle, region_, tolerance_))
         problem(path + ".rectangle",
@@ -197,29 +249,43 @@ void Checker::check_body(const v1::Body& body, const std::string& path) {
         problem(path + ".element_size",
                 path + ".element_size is larger than the body's shorter side, "
                     + number_text(std::min(rectangle.width(), rectangle.height())) + " m");
-    const bool moving = body.initial_velocity().x() != 0 || body.initial_velocity().y() != 0;
-    if (body.motion() == v1::Body::FIXED && moving)
-        problem(path + ".initial_velocity",
-                "a body with motion = \"fixed\" cannot have a velocity; did you mean motion = "
-                "\"deformable\"?");
-    if (body.motion() == v1::Body::DEFORMABLE && !body.has_youngs_modulus())
-        problem(path, "the deformable body '" + body.name() + "' lacks the key 'youngs_modulus'");
-    check_names(path + ".boundary", body.boundary());
-    for (int i = 0; i < body.boundary_size(); ++i)
-        check_boundary(body.boundary(i), rectangle, entry(path + ".boundary", i));
+}
+
+/// The curves of a body's shape; those of a mesh file are known to the solid alone.
+std::vector<std::string> curves_of(const v1::Body& body) {
+    if (body.has_rectangle())
+        return {"left", "right", "bottom", "top"};
+    if (body.has_disc())
+        return {"rim"};
+    if (body.has_ring())
+        return {"inner", "outer"};
+    return {};
 }
 
 void Checker::check_boundary(const v1::Boundary& boundary,
-                             const v1::Rectangle& rectangle,
+                             const v1::Body& body,
                              const std::string& path) {
-    const Point& a = boundary.along(0);
-    const Point& b = boundary.along(1);
-    if (distance(a, b) <= tolerance_)
-        return problem(path + ".along", path + ".along needs two different points");
-    if (boundary.has_temperature() && (boundary.heat_flux() != 0 || boundary.has_convection()))
+    if ((boundary.along_size() > 0) != boundary.curve().empty())
+        return problem(path, path + " needs either 'along' or 'curve' to say where it is");
+    if (boundary.has_temperature() && (!is_zero(boundary.heat_flux()) || boundary.has_convection()))
         problem(path + ".temperature",
                 path + " prescribes a temperature and a heat flux or convection; keep one of them");
-    const Polygon sides = corners(rectangle);
+    if (!boundary.curve().empty()) {
+        const std::vector<std::string> known = curves_of(body);
+        if (!known.empty()
+            && std::find(known.begin(), known.end(), boundary.curve()) == known.end())
+            problem(path + ".curve",
+                    "the body has no curve '" + boundary.curve() + "'; there is "
+                        + list(known, "and"));
+        return;
+    }
+    const Point& a = boundary.along(0);
+    const Point& b = boundary.along(boundary.along_size() - 1);
+    if (distance(a, b) <= tolerance_)
+        return problem(path + ".along", path + ".along needs two different points");
+    if (!body.has_rectangle())
+        return; // the solid knows where its boundary runs
+    const Polygon sides = corners(body.rectangle());
     double found = 0;
     for (std::size_t i = 0; i < sides.size(); ++i)
         found += common_length(a, b, sides[i], sides[(i + 1) % sides.size()], tolerance_);
@@ -266,7 +332,8 @@ void Checker::check_place(const v1::Probe& probe, const Point& p, const std::str
             const auto& bodies = scene_.solid().body();
             const bool found = std::any_of(bodies.begin(), bodies.end(), [&](const v1::Body& body) {
                 return (probe.body().empty() || probe.body() == body.name())
-                       && inside(corners(body.rectangle()), q, tolerance_);
+                       && (!body.has_rectangle()
+                           || inside(corners(body.rectangle()), q, tolerance_));
             });
             if (!found)
                 problem(path, "the point " + where + " lies in no body");
@@ -275,7 +342,7 @@ void Checker::check_place(const v1::Probe& probe, const Point& p, const std::str
         if (region_good_ && !inside(region_, q, tolerance_))
             problem(path, "the point " + where + " lies outside fluid.region");
         for (const v1::Body& body : scene_.solid().body())
-            if (strictly_inside(body.rectangle(), q, tolerance_))
+            if (body.has_rectangle() && strictly_inside(body.rectangle(), q, tolerance_))
                 problem(path,
                         "the point " + where + " lies in the body '" + body.name()
                             + "', where there is no fluid");

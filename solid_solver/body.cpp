@@ -15,7 +15,10 @@ BodyConfig checked(BodyConfig config) {
     } catch (const std::invalid_argument& fault) {
         throw std::invalid_argument("Body '" + config.name + "': " + fault.what());
     }
-    if (config.motion == Motion::deformable && !(config.material.youngs_modulus > 0)) {
+    const std::vector<Material> materials = config.materials();
+    const bool stiff = std::all_of(
+        materials.begin(), materials.end(), [](const Material& m) { return m.youngs_modulus > 0; });
+    if (config.motion == Motion::deformable && !stiff) {
         throw std::invalid_argument("Body '" + config.name
                                     + "' is deformable but has no Young's modulus; give "
                                       "youngs_modulus, or make its motion fixed.");
@@ -28,10 +31,19 @@ BodyConfig checked(BodyConfig config) {
 Body::Body(BodyConfig config)
     : config_(checked(std::move(config))), domains_(make_domains(config_.mesh, config_.smoothing)),
       heat_(config_, domains_) {
+    for (std::size_t t = 0; t < config_.mesh.triangle.size(); ++t) {
+        mass_ += config_.material_of(config_.mesh.part_of(t)).density
+                 * triangle_area(config_.mesh, config_.mesh.triangle[t]);
+    }
     if (config_.motion == Motion::deformable) {
         mechanics_.emplace(config_, domains_, heat_.temperature(), heat_.capacity());
     }
     if (config_.stepping == Stepping::implicit_steps) {
+        if (mechanics_ && mechanics_->driven()) {
+            throw std::invalid_argument("Body '" + config_.name
+                                        + "' has a boundary that moves as prescribed, which takes "
+                                          "explicit steps; give stepping = \"explicit\".");
+        }
         implicit_.emplace(heat_, mechanics_ ? &*mechanics_ : nullptr);
     }
     if (mechanics_) {
@@ -64,6 +76,8 @@ double Body::stable_step() const {
 // of the motion made last, the stress takes the new temperature. Started and ended at whole steps,
 // so the motion that the heat takes its rate from stands first. The staggering is centred in time.
 void Body::step(double dt) {
+    heat_.set_time(time_, time_ + dt);
+    time_ += dt;
     if (!mechanics_) {
         heat_.step(dt);
         return;
@@ -85,7 +99,9 @@ std::uint32_t Body::advance_implicitly(double length) {
     std::uint32_t taken = 0;
     for (double left = length; count > 0;) {
         const double dt = left / count;
+        heat_.set_time(time_, time_ + dt);
         if (implicit_->step(dt)) {
+            time_ += dt;
             left -= dt;
             --count;
             ++taken;

@@ -27,6 +27,7 @@ class Body {
     const Domains& domains() const { return domains_; }
     std::size_t nodes() const { return config_.mesh.node.size(); }
     double area() const { return area_; } ///< m2, undeformed
+    double mass() const { return mass_; } ///< kg/m
     bool deformable() const { return mechanics_.has_value(); }
 
     /// Constant loads from the interface from now on: heat [N] W/m and force [N][2] N/m.
@@ -69,6 +70,7 @@ class Body {
         if (implicit_) {
             implicit_->visit_state(visit);
         }
+        visit(time_);
         visit(steps_since_update_);
     }
 
@@ -79,11 +81,12 @@ class Body {
 
     BodyConfig config_;
     Domains domains_;
-    double area_ = mesh_area(config_.mesh);
+    double area_ = mesh_area(config_.mesh), mass_ = 0;
     Heat heat_;
     std::optional<Mechanics> mechanics_;
     std::optional<Implicit> implicit_;
     std::vector<double> rest_position_, rest_velocity_; ///< of a fixed body
+    double time_ = 0;                                   ///< s since the start
     double steps_since_update_ = 0;
 };
 

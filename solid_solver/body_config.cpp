@@ -1,14 +1,54 @@
 #include "solid_solver/body_config.hpp"
 
 #include <algorithm>
+#include <set>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 namespace duet::solid {
+
+namespace {
+
+/// The boundary edges that belong to the mesh's curve of that name.
+std::vector<Edge> edges_of_curve(const BoundaryCondition& condition,
+                                 const BodyConfig& body,
+                                 const std::vector<Edge>& boundary) {
+    using Pair = std::pair<std::uint32_t, std::uint32_t>;
+    std::set<Pair> wanted;
+    std::string names;
+    for (const Curve& curve : body.mesh.curve) {
+        names += (names.empty() ? "" : ", ") + curve.name;
+        if (curve.name != condition.curve) {
+            continue;
+        }
+        for (const auto& [a, b] : curve.edge) {
+            wanted.insert(std::minmax(a, b));
+        }
+    }
+    std::vector<Edge> chosen;
+    for (const Edge& edge : boundary) {
+        if (wanted.count(std::minmax(edge.a, edge.b)) > 0) {
+            chosen.push_back(edge);
+        }
+    }
+    if (chosen.empty()) {
+        throw std::invalid_argument("Boundary '" + condition.name + "' of body '" + body.name
+                                    + "' names the curve '" + condition.curve
+                                    + "', on which no boundary edge of its mesh lies; its curves "
+                                    + (names.empty() ? "have no names." : "are " + names + "."));
+    }
+    return chosen;
+}
+
+} // namespace
 
 std::vector<Edge> edges_of(const BoundaryCondition& condition,
                            const BodyConfig& body,
                            const std::vector<Edge>& boundary) {
+    if (!condition.curve.empty()) {
+        return edges_of_curve(condition, body, boundary);
+    }
     const Point line = condition.to - condition.from;
     const double length = line.norm();
     const double tolerance = 1e-6; // of the line or of the edge, whichever is shorter

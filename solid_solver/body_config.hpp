@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include "solid_solver/field.hpp"
 #include "solid_solver/mesh.hpp"
 #include "solid_solver/smoothing.hpp"
 
@@ -30,25 +31,47 @@ struct Material {
 
 struct Convection {
     double coefficient = 0; ///< W/(m2 K)
-    double temperature = 0; ///< K, of the surroundings
+    Field temperature;      ///< K, of the surroundings
 };
 
-/// Conditions on all boundary edges that lie on the line from `from` to `to`.
+/// Conditions on all boundary edges of a curve of the mesh, or, without one, on those that lie on
+/// the line from `from` to `to`. Fields are of the reference place and the time.
 struct BoundaryCondition {
     std::string name;
+    std::string curve;
     Point from = Point::Zero();
     Point to = Point::Zero();
     bool fixed_x = false;
     bool fixed_y = false;
-    Point traction = Point::Zero();    ///< Pa, per undeformed boundary, of constant direction
-    std::optional<double> temperature; ///< K
-    double heat_flux = 0;              ///< W/m2 into the body
+    std::optional<Field> displacement_x; ///< m, prescribed
+    std::optional<Field> displacement_y;
+    std::optional<Field> velocity_x; ///< m/s, prescribed
+    std::optional<Field> velocity_y;
+    VectorField traction;             ///< Pa, per undeformed boundary, whatever the body's turn
+    Field pressure;                   ///< Pa, along the inward normal of the deformed boundary
+    std::optional<Field> temperature; ///< K
+    Field heat_flux;                  ///< W/m2 into the body
     std::optional<Convection> convection;
 };
 
 enum class Motion {
-    fixed,     ///< rigid and at rest: heat alone
-    deformable ///< thermo-elastic, total Lagrangian
+    fixed,      ///< rigid and at rest: heat alone
+    prescribed, ///< rigid, moved as told: heat alone
+    deformable  ///< thermo-elastic, total Lagrangian
+};
+
+/// Place of a rigid body in time: turned by `angle` about `centre`, then shifted.
+struct RigidMotion {
+    Point centre = Point::Zero(); ///< m, reference place
+    VectorField displacement;     ///< m, of `centre`
+    Field angle;                  ///< rad, counter-clockwise
+};
+
+/// A force on the node nearest to a material point.
+struct PointLoad {
+    std::string name;
+    Point at = Point::Zero();
+    VectorField force; ///< N/m
 };
 
 enum class Stepping {
@@ -63,22 +86,34 @@ struct BodyConfig {
     Smoothing smoothing = Smoothing::edge;
     Motion motion = Motion::fixed;
     Material material;
-    double reference_temperature = 0; ///< K, free of thermal stress; T0 of (31)
-    double initial_temperature = 0;   ///< K
-    Point initial_velocity = Point::Zero();
-    double heat_source = 0;            ///< W/m3
-    Point body_force = Point::Zero();  ///< m/s2
-    double stiffness_damping = 0;      ///< s (63)
-    double mass_damping = 0;           ///< 1/s: the force -a M v on the nodes
-    bool thermoelastic_heating = true; ///< (31)
+    std::vector<Material> part_material; ///< of each part of the mesh; empty: `material`
+    RigidMotion rigid_motion;            ///< if the motion is prescribed
+    double reference_temperature = 0;    ///< K, free of thermal stress; T0 of (31)
+    Field initial_temperature;           ///< K
+    VectorField initial_displacement;    ///< m
+    VectorField initial_velocity;        ///< m/s
+    double heat_source = 0;              ///< W/m3
+    Point body_force = Point::Zero();    ///< m/s2
+    double stiffness_damping = 0;        ///< s (63)
+    double mass_damping = 0;             ///< 1/s: the force -a M v on the nodes
+    bool thermoelastic_heating = true;   ///< (31)
     Stepping stepping = Stepping::explicit_steps;
     double implicit_step = 0; ///< s, longest implicit step; 0: as long as the advance asked for
     std::vector<BoundaryCondition> boundary;
+    std::vector<PointLoad> point_load;
     int threads = 1;
+
+    const Material& material_of(std::uint32_t part) const {
+        return part_material.empty() ? material : part_material[part];
+    }
+    /// The materials in the order of the mesh's parts, one at least.
+    std::vector<Material> materials() const {
+        return part_material.empty() ? std::vector<Material>{material} : part_material;
+    }
 };
 
-/// The boundary edges on the line of `condition`. Throws std::invalid_argument naming the body and
-/// the condition if there is none.
+/// The boundary edges on the curve or line of `condition`. Throws std::invalid_argument naming the
+/// body and the condition if there is none.
 std::vector<Edge> edges_of(const BoundaryCondition& condition,
                            const BodyConfig& body,
                            const std::vector<Edge>& boundary);

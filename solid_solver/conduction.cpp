@@ -13,19 +13,20 @@ struct Term {
 };
 
 /// The upper triangle of -K, equal pairs summed in the order of the domains.
-std::vector<Term> upper_conductances(const Domains& domains, double conductivity) {
+std::vector<Term> upper_conductances(const Domains& domains,
+                                     const std::vector<double>& conductivity) {
     std::vector<Term> terms;
     terms.reserve(6 * domains.size());
     for (std::size_t k = 0; k < domains.size(); ++k) {
         const auto& node = domains.node[k];
         const auto &x = domains.gradient_x[k], &y = domains.gradient_y[k];
+        const double factor = domains.area[k] * conductivity[domains.part[k]];
         for (std::size_t s = 0; s < Domains::slots; ++s) {
             for (std::size_t t = s + 1; t < Domains::slots; ++t) {
                 if (node[s] != node[t]) {
-                    terms.push_back(
-                        {std::min(node[s], node[t]),
-                         std::max(node[s], node[t]),
-                         -domains.area[k] * conductivity * (x[s] * x[t] + y[s] * y[t])});
+                    terms.push_back({std::min(node[s], node[t]),
+                                     std::max(node[s], node[t]),
+                                     -factor * (x[s] * x[t] + y[s] * y[t])});
                 }
             }
         }
@@ -46,7 +47,7 @@ std::vector<Term> upper_conductances(const Domains& domains, double conductivity
 
 } // namespace
 
-Conduction::Conduction(const Domains& domains, double conductivity) {
+Conduction::Conduction(const Domains& domains, const std::vector<double>& conductivity) {
     std::vector<Term> upper = upper_conductances(domains, conductivity);
     double largest = 0;
     for (const Term& term : upper) {

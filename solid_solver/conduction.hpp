@@ -14,8 +14,9 @@ namespace duet::solid {
 /// stays so exactly, and what one node of a pair gives the other receives, to the last bit.
 class Conduction {
   public:
-    /// K_IJ = sum_k A_k conductivity gradN_I . gradN_J over the domains. W/(m K).
-    Conduction(const Domains& domains, double conductivity);
+    /// K_IJ = sum_k A_k conductivity gradN_I . gradN_J over the domains, with the conductivity of
+    /// the domain's part of the mesh. W/(m K).
+    Conduction(const Domains& domains, const std::vector<double>& conductivity);
 
     /// out_I = T_I + factor_I (rate_I + sum_J G_IJ (T_J - T_I)) for nodes begin .. end - 1; with
     /// factor = dt/C and rate = loads this is the explicit step of (24).

@@ -5,60 +5,118 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 namespace duet::solid {
 
+namespace {
+
+std::vector<double> conductivities(const BodyConfig& body) {
+    std::vector<double> all;
+    for (const Material& material : body.materials()) {
+        all.push_back(material.conductivity);
+    }
+    return all;
+}
+
+} // namespace
+
 Heat::Heat(const BodyConfig& body, const Domains& domains)
-    : threads_(body.threads), conduction_(domains, body.material.conductivity) {
+    : threads_(body.threads), conduction_(domains, conductivities(body)), place_(body.mesh.node) {
+    std::vector<double> density;
+    for (const Material& material : body.materials()) {
+        density.push_back(material.density * material.heat_capacity);
+    }
+    capacity_ = nodal_area(body.mesh, density); // (25)
     const std::vector<double> area = nodal_area(body.mesh);
     const std::size_t nodes = area.size();
-    capacity_.resize(nodes);
     constant_.resize(nodes);
     for (std::size_t i = 0; i < nodes; ++i) {
-        capacity_[i] = body.material.density * body.material.heat_capacity * area[i]; // (25)
-        constant_[i] = body.heat_source * area[i];                                    // (28)
-        source_power_ += constant_[i];
+        source_.push_back(body.heat_source * area[i]); // (28)
+        source_power_ += source_[i];
+        temperature_.push_back(body.initial_temperature(place_[i], 0));
     }
     interface_.assign(nodes, 0.0);
-    temperature_.assign(nodes, body.initial_temperature);
     apply_boundary(body);
+    for (const Fixed& fixed : fixed_) {
+        temperature_[fixed.node] = fixed.temperature;
+    }
     start_ = temperature_;
     next_.resize(nodes);
     factor_.resize(nodes);
-    collect_load();
     stable_step_ = bound();
 }
 
 void Heat::apply_boundary(const BodyConfig& body) {
     const std::vector<Edge> boundary = boundary_edges(body.mesh);
-    std::vector<double> exchange(temperature_.size(), 0.0), ambient(temperature_.size(), 0.0);
-    std::vector<double> held(temperature_.size(), std::nan(""));
+    std::vector<double> exchange(temperature_.size(), 0.0);
+    std::map<std::uint32_t, Field> held;
     for (const BoundaryCondition& condition : body.boundary) {
+        varies_ = varies_ || !condition.heat_flux.steady()
+                  || (condition.temperature && !condition.temperature->steady())
+                  || (condition.convection && !condition.convection->temperature.steady());
         for (const Edge& edge : edges_of(condition, body, boundary)) {
-            const double half = 0.5 * (body.mesh.node[edge.b] - body.mesh.node[edge.a]).norm();
-            for (const std::uint32_t i : {edge.a, edge.b}) {
-                constant_[i] += condition.heat_flux * half; // (29)
-                flux_power_ += condition.heat_flux * half;
-                if (condition.convection) { // (26), (30), lumped like the capacity
-                    exchange[i] += condition.convection->coefficient * half;
-                    ambient[i] += condition.convection->coefficient * half
-                                  * condition.convection->temperature;
-                }
-                if (condition.temperature) {
-                    held[i] = *condition.temperature;
-                }
+            const double half = 0.5 * (place_[edge.b] - place_[edge.a]).norm();
+            if (!condition.heat_flux.zero()) {
+                flux_.push_back({edge.a, edge.b, half, condition.heat_flux}); // (29)
+            }
+            if (condition.convection) { // (26), (30), lumped like the capacity
+                const double coefficient = condition.convection->coefficient * half;
+                surroundings_.push_back(
+                    {edge.a, edge.b, coefficient, condition.convection->temperature});
+                exchange[edge.a] += coefficient;
+                exchange[edge.b] += coefficient;
+            }
+            if (condition.temperature) {
+                held.insert_or_assign(edge.a, *condition.temperature);
+                held.insert_or_assign(edge.b, *condition.temperature);
             }
         }
     }
-    for (std::uint32_t i = 0; i < temperature_.size(); ++i) {
+    for (std::uint32_t i = 0; i < exchange.size(); ++i) {
         if (exchange[i] > 0) {
-            exchange_.push_back({i, exchange[i], ambient[i] / exchange[i]});
+            exchange_.push_back({i, exchange[i], 0});
         }
-        if (!std::isnan(held[i])) {
-            fixed_.push_back({i, held[i]});
-            temperature_[i] = held[i];
-        }
+    }
+    for (const auto& [node, field] : held) {
+        fixed_.push_back({node, 0, field});
+    }
+    set_boundary(0, 0);
+}
+
+/// A field that is linear along the edge, against the shape functions of its two nodes.
+std::array<double, 2> Heat::on_nodes(const OnEdge& edge, double time) const {
+    const double a = edge.field(place_[edge.a], time), b = edge.field(place_[edge.b], time);
+    return {edge.half * (2 * a + b) / 3, edge.half * (a + 2 * b) / 3};
+}
+
+void Heat::set_boundary(double middle, double end) {
+    constant_ = source_;
+    flux_power_ = 0;
+    for (const OnEdge& edge : flux_) {
+        const auto [a, b] = on_nodes(edge, middle);
+        constant_[edge.a] += a;
+        constant_[edge.b] += b;
+        flux_power_ += a + b;
+    }
+    std::vector<double> ambient(surroundings_.empty() ? 0 : temperature_.size(), 0.0);
+    for (const OnEdge& edge : surroundings_) { // lumped, as its coefficient is
+        ambient[edge.a] += edge.half * edge.field(place_[edge.a], middle);
+        ambient[edge.b] += edge.half * edge.field(place_[edge.b], middle);
+    }
+    for (Exchange& exchange : exchange_) {
+        exchange.temperature = ambient[exchange.node] / exchange.coefficient;
+    }
+    for (Fixed& fixed : fixed_) {
+        fixed.temperature = fixed.field(place_[fixed.node], end);
+    }
+    collect_load();
+}
+
+void Heat::set_time(double begin, double end) {
+    if (varies_) {
+        set_boundary(0.5 * (begin + end), end);
     }
 }
 

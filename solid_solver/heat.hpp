@@ -5,6 +5,7 @@
 #include "solid_solver/body_config.hpp"
 #include "solid_solver/conduction.hpp"
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -25,6 +26,10 @@ class Heat {
 
     /// Constant heat flows into the nodes, W/m, from now on: [N].
     void set_interface_heat(std::span<const double> nodal);
+
+    /// Brings fluxes and surroundings to the middle of a step and prescribed temperatures to its
+    /// end; s since the start. Without a condition that varies this does nothing.
+    void set_time(double begin, double end);
 
     /// One explicit step. `thermoelastic`: W/m into each node by compression, or empty.
     void step(double dt, std::span<const double> thermoelastic = {});
@@ -83,14 +88,23 @@ class Heat {
     struct Fixed {
         std::uint32_t node;
         double temperature;
+        Field field;
     };
     struct Exchange { ///< convection, lumped on a node like its capacity
         std::uint32_t node;
         double coefficient; ///< W/(m K)
         double temperature; ///< K, of the surroundings
     };
+    /// A flux, or the surroundings of a convection, on one boundary edge.
+    struct OnEdge {
+        std::uint32_t a, b;
+        double half; ///< m, of its length; times the coefficient for convection
+        Field field;
+    };
 
     void apply_boundary(const BodyConfig& body);
+    void set_boundary(double middle, double end);
+    std::array<double, 2> on_nodes(const OnEdge& edge, double time) const;
     void collect_load();
     void hold();
     double bound() const;
@@ -98,11 +112,15 @@ class Heat {
     int threads_;
     Conduction conduction_;
     std::vector<double> capacity_;
+    std::vector<Point> place_;      ///< [N] m, reference
     std::vector<double> constant_;  ///< W/m: body source and boundary fluxes
+    std::vector<double> source_;    ///< W/m: body source
     std::vector<double> interface_; ///< W/m
     std::vector<double> load_;      ///< their sum
     std::vector<Fixed> fixed_;
     std::vector<Exchange> exchange_;
+    std::vector<OnEdge> flux_, surroundings_;
+    bool varies_ = false;     ///< some condition changes in time
     double source_power_ = 0; ///< W/m
     double flux_power_ = 0;
     double interface_power_ = 0;

@@ -88,6 +88,7 @@ void Implicit::start() {
         displacement_ = vector(mechanics_->displacement());
         velocity_ = vector(mechanics_->velocity());
         latent_ = vector(mechanics_->latent_heat());
+        mechanics_->look_ahead(0.5 * dt_); // loads are taken in the middle of the step
         acceleration_.resize(displacement_.size());
         for (Eigen::Index c = 0; c < acceleration_.size(); ++c) {
             const auto i = static_cast<std::size_t>(c);
@@ -261,6 +262,7 @@ void Implicit::undo() {
     if (mechanics_) {
         const Vector none = Vector::Zero(temperature_.size());
         mechanics_->evaluate(span(displacement_), span(velocity_), span(temperature_), span(none));
+        mechanics_->look_ahead(0);
     }
 }
 

@@ -27,29 +27,32 @@ Mechanics::Mechanics(const BodyConfig& body,
                      const Domains& domains,
                      std::span<const double> temperature,
                      std::span<const double> capacity)
-    : domains_(domains), threads_(body.threads), lambda_(body.material.lambda()),
-      mu_(body.material.mu()), beta_(body.material.beta()),
-      reference_temperature_(body.reference_temperature), damping_(body.stiffness_damping),
-      mass_damping_(body.mass_damping),
-      heat_capacity_(body.material.density * body.material.heat_capacity),
-      heated_(body.thermoelastic_heating && beta_ * reference_temperature_ != 0),
+    : domains_(domains), threads_(body.threads), reference_temperature_(body.reference_temperature),
+      damping_(body.stiffness_damping), mass_damping_(body.mass_damping),
       capacity_(capacity.begin(), capacity.end()), spectrum_(2 * body.mesh.node.size()) {
-    const std::vector<double> area = nodal_area(body.mesh);
-    const std::size_t nodes = area.size();
-    mass_.resize(nodes);
+    std::vector<double> density;
+    for (const Material& m : body.materials()) {
+        density.push_back(m.density);
+        law_.push_back({m.lambda(), m.mu(), m.beta(), m.density * m.heat_capacity});
+        heated_ = heated_ || (body.thermoelastic_heating && m.beta() * reference_temperature_ != 0);
+    }
+    mass_ = nodal_area(body.mesh, density); // (19)
+    const std::size_t nodes = mass_.size();
     for (std::size_t i = 0; i < nodes; ++i) {
-        mass_[i] = body.material.density * area[i];
         for (int d = 0; d < 2; ++d) {
             reference_.push_back(body.mesh.node[i][d]);
             inverse_mass_.push_back(1 / mass_[i]);
-            constant_.push_back(mass_[i] * body.body_force[d]);
-            velocity_.push_back(body.initial_velocity[d]);
+            velocity_.push_back(body.initial_velocity(body.mesh.node[i], 0)[d]);
+            displacement_.push_back(body.initial_displacement(body.mesh.node[i], 0)[d]);
         }
     }
-    apply_boundary(body);
+    loads_ = Loads(body, mass_);
+    for (const Loads::Held& held : loads_.held()) {
+        inverse_mass_[held.component] = 0;
+    }
+    external_.resize(2 * nodes);
     interface_.assign(2 * nodes, 0.0);
     internal_.assign(2 * nodes, 0.0);
-    displacement_.assign(2 * nodes, 0.0);
     position_.resize(2 * nodes);
     stress_.assign(3 * domains.size(), 0.0);
     latent_.assign(nodes, 0.0);
@@ -57,38 +60,24 @@ Mechanics::Mechanics(const BodyConfig& body,
     heat_share_.resize(slots * domains.size());
     heating_.resize(nodes);
     nodal_change_.resize(nodes);
-    set_motion(std::vector<double>(2 * nodes, 0.0), std::vector<double>(velocity_), temperature);
+    set_motion(std::vector<double>(displacement_), std::vector<double>(velocity_), temperature);
     frequency_ = std::sqrt(spectrum_.largest(
         [this](const double* u, double* f) { apply_adiabatic_tangent(u, f); }, inverse_mass_));
-}
-
-void Mechanics::apply_boundary(const BodyConfig& body) {
-    const std::vector<Edge> boundary = boundary_edges(body.mesh);
-    for (const BoundaryCondition& condition : body.boundary) {
-        for (const Edge& edge : edges_of(condition, body, boundary)) {
-            const double half = 0.5 * (body.mesh.node[edge.b] - body.mesh.node[edge.a]).norm();
-            for (const std::uint32_t i : {edge.a, edge.b}) {
-                for (int d = 0; d < 2; ++d) {
-                    const std::size_t c = 2 * i + static_cast<std::size_t>(d);
-                    constant_[c] += condition.traction[d] * half;
-                    if (d == 0 ? condition.fixed_x : condition.fixed_y) {
-                        inverse_mass_[c] = 0;
-                    }
-                }
-            }
-        }
-    }
 }
 
 void Mechanics::set_motion(std::span<const double> displacement,
                            std::span<const double> velocity,
                            std::span<const double> temperature) {
-    for (std::size_t c = 0; c < position_.size(); ++c) {
-        const bool held = inverse_mass_[c] == 0;
-        displacement_[c] = held ? 0 : displacement[c];
-        velocity_[c] = held ? 0 : velocity[c];
+    std::copy(displacement.begin(), displacement.end(), displacement_.begin());
+    std::copy(velocity.begin(), velocity.end(), velocity_.begin());
+    for (const Loads::Held& held : loads_.held()) {
+        if (!held.velocity) {
+            displacement_[held.component] = held.value(held.place, time_);
+        }
     }
+    hold_velocities();
     place();
+    loads_.forces(time_, position_, external_);
     compute_forces(0, temperature); // no rate yet: the damping sets in with the first step
     latent_heat(displacement_, latent_);
 }
@@ -96,6 +85,43 @@ void Mechanics::set_motion(std::span<const double> displacement,
 void Mechanics::place() {
     for (std::size_t c = 0; c < position_.size(); ++c) {
         position_[c] = reference_[c] + displacement_[c];
+    }
+}
+
+void Mechanics::look_ahead(double length) {
+    ahead_ = length;
+    if (loads_.vary()) {
+        loads_.forces(time_ + ahead_, position_, external_);
+    }
+}
+
+/// The velocities of held components at the present time.
+void Mechanics::hold_velocities() {
+    for (const Loads::Held& held : loads_.held()) {
+        const auto value = [&](double time) { return held.value(held.place, time); };
+        double& velocity = velocity_[held.component];
+        if (held.velocity) {
+            velocity = value(time_);
+        } else if (held.value.steady()) {
+            velocity = 0;
+        } else { // a difference over a thousandth of a step, none before the start
+            const double reach = last_step_ > 0 ? 1e-3 * last_step_ : 1e-6;
+            const double before = std::max(0.0, time_ - reach);
+            velocity = (value(time_ + reach) - value(before)) / (time_ + reach - before);
+        }
+    }
+}
+
+/// The velocities that bring held components to their places a step later.
+void Mechanics::hold_course(double dt) {
+    if (!loads_.moves()) {
+        return;
+    }
+    for (const Loads::Held& held : loads_.held()) {
+        velocity_[held.component] =
+            held.velocity
+                ? held.value(held.place, time_ + 0.5 * dt)
+                : (held.value(held.place, time_ + dt) - displacement_[held.component]) / dt;
     }
 }
 
@@ -112,7 +138,7 @@ void Mechanics::set_interface_force(std::span<const double> nodal) {
 void Mechanics::kick(double half_step) {
     for (std::size_t c = 0; c < velocity_.size(); ++c) {
         velocity_[c] +=
-            half_step * inverse_mass_[c] * (constant_[c] + interface_[c] + internal_[c]);
+            half_step * inverse_mass_[c] * (external_[c] + interface_[c] + internal_[c]);
     }
 }
 
@@ -121,10 +147,13 @@ void Mechanics::kick(double half_step) {
 void Mechanics::drift(double dt) {
     slow_down(1 - 0.5 * mass_damping_ * dt);
     kick(0.5 * dt);
+    hold_course(dt);
     for (std::size_t c = 0; c < displacement_.size(); ++c) {
         displacement_[c] += dt * velocity_[c];
     }
     place();
+    time_ += dt;
+    last_step_ = dt;
     for (const std::uint32_t c : loaded_) {
         work_ += interface_[c] * dt * velocity_[c];
         impulse_[c % 2] += interface_[c] * dt;
@@ -132,9 +161,15 @@ void Mechanics::drift(double dt) {
 }
 
 void Mechanics::respond(double dt, std::span<const double> temperature) {
+    if (loads_.vary()) {
+        loads_.forces(time_, position_, external_);
+    }
     compute_forces(dt, temperature);
     kick(0.5 * dt);
     slow_down(1 / (1 + 0.5 * mass_damping_ * dt));
+    if (loads_.moves()) {
+        hold_velocities();
+    }
 }
 
 void Mechanics::slow_down(double factor) {
@@ -168,12 +203,13 @@ double Mechanics::domain_temperature(std::size_t k, std::span<const double> temp
 }
 
 /// S = lambda tr(E) I + 2 mu E - beta (T - T0) I, E = (g + g^T + g^T g)/2, g = F - I.
-PlaneTensor Mechanics::second_piola(const Gradient& g, double temperature) const {
+PlaneTensor Mechanics::second_piola(std::size_t k, const Gradient& g, double temperature) const {
+    const Law& m = law(k);
     const double exx = g.xx + 0.5 * (g.xx * g.xx + g.yx * g.yx);
     const double eyy = g.yy + 0.5 * (g.xy * g.xy + g.yy * g.yy);
     const double exy = 0.5 * (g.xy + g.yx + g.xx * g.xy + g.yx * g.yy);
-    const double mean = lambda_ * (exx + eyy) - beta_ * (temperature - reference_temperature_);
-    return {mean + 2 * mu_ * exx, mean + 2 * mu_ * eyy, 2 * mu_ * exy, mean};
+    const double mean = m.lambda * (exx + eyy) - m.beta * (temperature - reference_temperature_);
+    return {mean + 2 * m.mu * exx, mean + 2 * m.mu * eyy, 2 * m.mu * exy, mean};
 }
 
 /// The domain's share of -f_int: -A P gradN_I with P = F S, for each of its nodes (20).
@@ -215,7 +251,7 @@ void Mechanics::compute_forces(double dt, std::span<const double> temperature) {
     in_pieces(domains_.size(), threads_, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
             const Gradient g = displacement_gradient(k, displacement_.data());
-            const PlaneTensor s = second_piola(g, domain_temperature(k, temperature));
+            const PlaneTensor s = second_piola(k, g, domain_temperature(k, temperature));
             double* old = &stress_[3 * k];
             put_force(k,
                       g,
@@ -235,17 +271,22 @@ void Mechanics::evaluate(std::span<const double> displacement,
                          std::span<const double> temperature,
                          std::span<const double> warming) {
     std::copy(displacement.begin(), displacement.end(), displacement_.begin());
+    if (loads_.vary()) { // a pressure follows the motion
+        place();
+        loads_.forces(time_ + ahead_, position_, external_);
+    }
     for (std::size_t k = 0; k < domains_.size(); ++k) {
         const Gradient g = displacement_gradient(k, displacement_.data());
-        const PlaneTensor s = second_piola(g, domain_temperature(k, temperature));
+        const PlaneTensor s = second_piola(k, g, domain_temperature(k, temperature));
         stress_[3 * k] = s.xx;
         stress_[3 * k + 1] = s.yy;
         stress_[3 * k + 2] = s.xy;
         std::array<double, 3> rate{};
         if (damping_ > 0) {
             const auto e = strain_change(g, displacement_gradient(k, velocity.data()));
-            const double mean = lambda_ * (e[0] + e[1]) - beta_ * domain_temperature(k, warming);
-            rate = {mean + 2 * mu_ * e[0], mean + 2 * mu_ * e[1], 2 * mu_ * e[2]};
+            const Law& m = law(k);
+            const double mean = m.lambda * (e[0] + e[1]) - m.beta * domain_temperature(k, warming);
+            rate = {mean + 2 * m.mu * e[0], mean + 2 * m.mu * e[1], 2 * m.mu * e[2]};
         }
         put_force(
             k, g, s.xx + damping_ * rate[0], s.yy + damping_ * rate[1], s.xy + damping_ * rate[2]);
@@ -254,14 +295,15 @@ void Mechanics::evaluate(std::span<const double> displacement,
 }
 
 Mechanics::Linearised Mechanics::linearised(std::size_t k) const {
-    const double warming = heated_ ? beta_ * beta_ * reference_temperature_ / heat_capacity_ : 0;
+    const Law& m = law(k);
+    const double warming = heated_ ? m.beta * m.beta * reference_temperature_ / m.heat_capacity : 0;
     return {domains_.area[k],
             domains_.gradient_x[k],
             domains_.gradient_y[k],
             displacement_gradient(k, displacement_.data()),
             {stress_[3 * k], stress_[3 * k + 1], stress_[3 * k + 2], 0},
-            lambda_,
-            mu_,
+            m.lambda,
+            m.mu,
             warming};
 }
 
@@ -283,13 +325,12 @@ void Mechanics::latent_heat(std::span<const double> displacement, std::span<doub
         std::fill(nodal.begin(), nodal.end(), 0.0);
         return;
     }
-    const double factor = beta_ * reference_temperature_;
     in_pieces(domains_.size(), threads_, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
             const Gradient g = displacement_gradient(k, displacement.data());
             const double trace =
                 g.xx + g.yy + 0.5 * (g.xx * g.xx + g.yx * g.yx + g.xy * g.xy + g.yy * g.yy);
-            const double heat = factor * domains_.area[k] * trace;
+            const double heat = law(k).beta * reference_temperature_ * domains_.area[k] * trace;
             for (std::size_t s = 0; s < slots; ++s) {
                 heat_share_[slots * k + s] = heat * domains_.weight[k][s];
             }
@@ -306,7 +347,8 @@ void Mechanics::apply_tangent(const double* u,
         for (std::size_t k = 0; k < domains_.size(); ++k) {
             const auto e = strain_change(displacement_gradient(k, displacement_.data()),
                                          displacement_gradient(k, u));
-            const double heat = -beta_ * reference_temperature_ * domains_.area[k] * (e[0] + e[1]);
+            const double heat =
+                -law(k).beta * reference_temperature_ * domains_.area[k] * (e[0] + e[1]);
             for (std::size_t s = 0; s < slots; ++s) {
                 heat_share_[slots * k + s] = heat * domains_.weight[k][s];
             }
@@ -318,9 +360,10 @@ void Mechanics::apply_tangent(const double* u,
         const Gradient g = displacement_gradient(k, displacement_.data());
         const Gradient d = displacement_gradient(k, u);
         const auto e = strain_change(g, d);
+        const Law& m = law(k);
         const double warmer = heated_ ? domain_temperature(k, nodal_change_) : 0;
-        const double mean = material * lambda_ * (e[0] + e[1]) - beta_ * warmer;
-        const double twice = 2 * material * mu_;
+        const double mean = material * m.lambda * (e[0] + e[1]) - m.beta * warmer;
+        const double twice = 2 * material * m.mu;
         put_force(k, g, mean + twice * e[0], mean + twice * e[1], twice * e[2]);
         // dF S: the stress that is there already, turned with the material.
         const double* s = &stress_[3 * k];
@@ -354,6 +397,8 @@ void Mechanics::apply_adiabatic_tangent(const double* u, double* force) {
 void Mechanics::accept(double dt,
                        std::span<const double> before,
                        std::span<const double> velocity) {
+    time_ += dt;
+    last_step_ = dt;
     for (const std::uint32_t c : loaded_) {
         work_ += interface_[c] * (displacement_[c] - before[c]);
         impulse_[c % 2] += interface_[c] * dt;
@@ -361,6 +406,7 @@ void Mechanics::accept(double dt,
     std::copy(velocity.begin(), velocity.end(), velocity_.begin());
     latent_heat(displacement_, latent_);
     place();
+    look_ahead(0);
 }
 
 void Mechanics::update_frequency() {
@@ -395,8 +441,8 @@ double Mechanics::strain_energy() const {
         const double eyy = g.yy + 0.5 * (g.xy * g.xy + g.yy * g.yy);
         const double exy = 0.5 * (g.xy + g.yx + g.xx * g.xy + g.yx * g.yy);
         energy += domains_.area[k]
-                  * (0.5 * lambda_ * (exx + eyy) * (exx + eyy)
-                     + mu_ * (exx * exx + eyy * eyy + 2 * exy * exy));
+                  * (0.5 * law(k).lambda * (exx + eyy) * (exx + eyy)
+                     + law(k).mu * (exx * exx + eyy * eyy + 2 * exy * exy));
     }
     return energy;
 }
@@ -404,7 +450,7 @@ double Mechanics::strain_energy() const {
 /// sigma = F S F^T / J; out of the plane F is one.
 PlaneTensor Mechanics::domain_stress(std::size_t k, std::span<const double> temperature) const {
     const Gradient g = displacement_gradient(k, displacement_.data());
-    const PlaneTensor s = second_piola(g, domain_temperature(k, temperature));
+    const PlaneTensor s = second_piola(k, g, domain_temperature(k, temperature));
     const double fxx = 1 + g.xx, fyy = 1 + g.yy;
     const double jacobian = fxx * fyy - g.xy * g.yx;
     const double pxx = fxx * s.xx + g.xy * s.xy, pxy = fxx * s.xy + g.xy * s.yy;

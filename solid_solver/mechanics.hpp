@@ -4,6 +4,7 @@
 #pragma once
 
 #include "solid_solver/body_config.hpp"
+#include "solid_solver/loads.hpp"
 #include "solid_solver/spectrum.hpp"
 
 #include <array>
@@ -63,7 +64,8 @@ class Mechanics {
     /// Area-weighted mean of the domains round each node [N].
     std::vector<PlaneTensor> nodal_stress(std::span<const double> temperature) const;
 
-    /// Replaces the state: displacement and velocity [N][2].
+    /// Replaces the state: displacement and velocity [N][2]; held components follow their
+    /// conditions.
     void set_motion(std::span<const double> displacement,
                     std::span<const double> velocity,
                     std::span<const double> temperature);
@@ -76,6 +78,9 @@ class Mechanics {
         visit(internal_);
         visit(stress_);
         visit(latent_);
+        visit(external_);
+        visit(time_);
+        visit(last_step_);
         visit(impulse_[0]);
         visit(impulse_[1]);
         visit(work_);
@@ -103,6 +108,10 @@ class Mechanics {
     /// of the last forces, `material` times its material part, with the temperature that the
     /// compression brings about by `warming`.
     void apply_tangent(const double* u, double* force, double material, const Warming& warming);
+    /// Loads that change in time are from now on those of `length` s after the present time.
+    void look_ahead(double length);
+    /// Prescribed displacements or velocities that are not zero.
+    bool driven() const { return loads_.moves(); }
     /// Ends an implicit step of length dt at the motion of the last evaluate, with `velocity`.
     void accept(double dt, std::span<const double> before, std::span<const double> velocity);
     double mass_damping() const { return mass_damping_; } ///< 1/s
@@ -128,33 +137,42 @@ class Mechanics {
     std::span<const double> displacement() const { return displacement_; } ///< [N][2] m
     /// [N][2] N/m: body force, traction and interface.
     double load(std::size_t component) const {
-        return constant_[component] + interface_[component];
+        return external_[component] + interface_[component];
     }
 
   private:
+    /// The constants of one part's material.
+    struct Law {
+        double lambda, mu, beta;
+        double heat_capacity; ///< J/(m3 K)
+    };
+    const Law& law(std::size_t domain) const { return law_[domains_.part[domain]]; }
+
     Gradient displacement_gradient(std::size_t domain, const double* displacement) const;
     double domain_temperature(std::size_t domain, std::span<const double> temperature) const;
-    PlaneTensor second_piola(const Gradient& g, double temperature) const;
+    PlaneTensor second_piola(std::size_t domain, const Gradient& g, double temperature) const;
     void put_force(std::size_t domain, const Gradient& g, double sxx, double syy, double sxy);
     void gather(const std::vector<double>& contribution, double* nodal, int components) const;
     void compute_forces(double dt, std::span<const double> temperature);
     void apply_adiabatic_tangent(const double* u, double* force);
-    void apply_boundary(const BodyConfig& body);
+    void hold_velocities();
+    void hold_course(double dt);
     void kick(double half_step);
     void slow_down(double factor);
     void place(); ///< positions from the displacement
 
     const Domains& domains_;
     int threads_;
-    double lambda_, mu_, beta_, reference_temperature_, damping_, mass_damping_;
-    double heat_capacity_; ///< J/(m3 K)
-    bool heated_;          ///< thermo-elastic heating is on and not zero
+    std::vector<Law> law_; ///< of each part of the mesh
+    double reference_temperature_, damping_, mass_damping_;
+    bool heated_ = false; ///< thermo-elastic heating is on and not zero
 
-    std::vector<double> reference_;     ///< [N][2] m
-    std::vector<double> mass_;          ///< [N]
-    std::vector<double> inverse_mass_;  ///< [N][2], zero where held
-    std::vector<double> capacity_;      ///< [N] J/(m K)
-    std::vector<double> constant_;      ///< [N][2] N/m: body force and traction
+    std::vector<double> reference_;    ///< [N][2] m
+    std::vector<double> mass_;         ///< [N]
+    std::vector<double> inverse_mass_; ///< [N][2], zero where held
+    std::vector<double> capacity_;     ///< [N] J/(m K)
+    Loads loads_;
+    std::vector<double> external_;      ///< [N][2] N/m: the loads at the present time
     std::vector<double> interface_;     ///< [N][2] N/m
     std::vector<std::uint32_t> loaded_; ///< components of interface_ that are not zero
 
@@ -166,6 +184,9 @@ class Mechanics {
     std::vector<double> latent_;   ///< [N] J/m, latent_heat at the last call of heating
     std::array<double, 2> impulse_{};
     double work_ = 0;
+    double time_ = 0;      ///< s since the start
+    double last_step_ = 0; ///< s
+    double ahead_ = 0;     ///< s, within an implicit step
     double frequency_ = 0;
     Spectrum spectrum_;
 

@@ -167,38 +167,6 @@ void check_boundary(const Mesh& mesh, double tolerance) {
 
 } // namespace
 
-Mesh rectangle_mesh(const Point& corner, double width, double height, double element_size) {
-    if (!(width > 0 && height > 0 && element_size > 0)) {
-        throw std::invalid_argument(
-            "A rectangle's width, height and element size must be positive.");
-    }
-    const auto cells = [&](double side) {
-        return static_cast<std::uint32_t>(std::max(1.0, std::round(side / element_size)));
-    };
-    const std::uint32_t nx = cells(width), ny = cells(height);
-    Mesh mesh;
-    mesh.node.reserve((nx + 1) * (ny + 1));
-    for (std::uint32_t j = 0; j <= ny; ++j) {
-        for (std::uint32_t i = 0; i <= nx; ++i) {
-            mesh.node.emplace_back(corner.x() + width * i / nx, corner.y() + height * j / ny);
-        }
-    }
-    mesh.triangle.reserve(2 * nx * ny);
-    for (std::uint32_t j = 0; j < ny; ++j) {
-        for (std::uint32_t i = 0; i < nx; ++i) {
-            const std::uint32_t a = j * (nx + 1) + i, b = a + 1, d = a + nx + 1, c = d + 1;
-            if ((2 * i < nx) == (2 * j < ny)) {
-                mesh.triangle.push_back({a, b, c});
-                mesh.triangle.push_back({a, c, d});
-            } else {
-                mesh.triangle.push_back({a, b, d});
-                mesh.triangle.push_back({b, c, d});
-            }
-        }
-    }
-    return mesh;
-}
-
 void check_mesh(const Mesh& mesh) {
     check_triangles(mesh);
     Point low = mesh.node.front(), high = low;

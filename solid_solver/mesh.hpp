@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <vector>
 
 namespace duet::solid {
@@ -14,9 +15,20 @@ namespace duet::solid {
 using Point = Eigen::Vector2d;
 using Triangle = std::array<std::uint32_t, 3>; ///< nodes, counter-clockwise
 
+/// A named piece of the boundary.
+struct Curve {
+    std::string name;
+    std::vector<std::array<std::uint32_t, 2>> edge; ///< nodes, in either order
+};
+
 struct Mesh {
     std::vector<Point> node; ///< m, reference positions
     std::vector<Triangle> triangle;
+    std::vector<std::uint32_t> part = {}; ///< [triangles] index into part_name; empty: all are one
+    std::vector<std::string> part_name = {}; ///< parts may be of different materials
+    std::vector<Curve> curve = {};
+
+    std::uint32_t part_of(std::size_t t) const { return part.empty() ? 0 : part[t]; }
 };
 
 /// An edge of the mesh. `triangle[0]` lies to the left of the way from `a` to `b`; a boundary edge
@@ -28,16 +40,6 @@ struct Edge {
     std::array<std::uint32_t, 2> triangle{none, none};
     bool boundary() const { return triangle[1] == none; }
 };
-
-/// Rectangle [corner, corner + (width, height)] cut into squares of about `element_size` (the
-/// nearest number of whole cells along each side), each into two triangles. The diagonals point to
-/// the rectangle's centre, so that they alternate from quarter to quarter: with even numbers of
-/// cells the mesh is its own mirror image in both middle lines, no corner is a triangle of its own,
-/// and within a quarter all diagonals are alike, on which edge domains are at their best (in
-/// bending they come several times closer than on diagonals that alternate from cell to cell).
-/// Nodes are numbered row by row from the lower left. Throws std::invalid_argument if a length is
-/// not positive.
-Mesh rectangle_mesh(const Point& corner, double width, double height, double element_size);
 
 /// Throws std::invalid_argument with a sentence if the mesh cannot be computed with: an index out
 /// of range, a coordinate that is not finite, a triangle that is inverted or has no area, a node

@@ -50,7 +50,7 @@ struct Assembly {
         }
     }
 
-    void finish(Domains& domains) {
+    void finish(std::uint32_t part, Domains& domains) {
         for (std::size_t s = count; s < Domains::slots; ++s) {
             node[s] = node[0];
         }
@@ -64,32 +64,43 @@ struct Assembly {
         domains.gradient_x.push_back(x);
         domains.gradient_y.push_back(y);
         domains.weight.push_back(weight);
+        domains.part.push_back(part);
     }
 };
+
+void add_third(const Mesh& mesh, const Edge& edge, std::uint32_t triangle, Assembly& assembly) {
+    std::array<double, 3> mean{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::uint32_t node = mesh.triangle[triangle][i];
+        mean[i] = node == edge.a || node == edge.b ? 4.0 / 9 : 1.0 / 9;
+    }
+    assembly.add(mesh, mesh.triangle[triangle], 1.0 / 3, mean);
+}
 
 void add_edge_domains(const Mesh& mesh, Domains& domains) {
     for (const Edge& edge : mesh_edges(mesh)) {
         Assembly assembly;
-        for (const std::uint32_t e : edge.triangle) {
-            if (e == Edge::none) {
-                continue;
+        add_third(mesh, edge, edge.triangle[0], assembly);
+        const std::uint32_t part = mesh.part_of(edge.triangle[0]);
+        if (!edge.boundary()) {
+            const std::uint32_t other = mesh.part_of(edge.triangle[1]);
+            if (other != part) {
+                assembly.finish(part, domains);
+                assembly = {};
             }
-            std::array<double, 3> mean{};
-            for (std::size_t i = 0; i < 3; ++i) {
-                const std::uint32_t node = mesh.triangle[e][i];
-                mean[i] = node == edge.a || node == edge.b ? 4.0 / 9 : 1.0 / 9;
-            }
-            assembly.add(mesh, mesh.triangle[e], 1.0 / 3, mean);
+            add_third(mesh, edge, edge.triangle[1], assembly);
+            assembly.finish(other, domains);
+        } else {
+            assembly.finish(part, domains);
         }
-        assembly.finish(domains);
     }
 }
 
 void add_element_domains(const Mesh& mesh, Domains& domains) {
-    for (const Triangle& triangle : mesh.triangle) {
+    for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
         Assembly assembly;
-        assembly.add(mesh, triangle, 1, {1.0 / 3, 1.0 / 3, 1.0 / 3});
-        assembly.finish(domains);
+        assembly.add(mesh, mesh.triangle[t], 1, {1.0 / 3, 1.0 / 3, 1.0 / 3});
+        assembly.finish(mesh.part_of(t), domains);
     }
 }
 
@@ -131,11 +142,12 @@ Domains make_domains(const Mesh& mesh, Smoothing smoothing) {
     return domains;
 }
 
-std::vector<double> nodal_area(const Mesh& mesh) {
+std::vector<double> nodal_area(const Mesh& mesh, const std::vector<double>& density) {
     std::vector<double> area(mesh.node.size(), 0.0);
-    for (const Triangle& triangle : mesh.triangle) {
-        const double third = triangle_area(mesh, triangle) / 3;
-        for (const std::uint32_t i : triangle) {
+    for (std::size_t t = 0; t < mesh.triangle.size(); ++t) {
+        const double weight = density.empty() ? 1 : density[mesh.part_of(t)];
+        const double third = weight * triangle_area(mesh, mesh.triangle[t]) / 3;
+        for (const std::uint32_t i : mesh.triangle[t]) {
             area[i] += third;
         }
     }

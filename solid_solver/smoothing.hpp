@@ -26,6 +26,7 @@ struct Domains {
     std::vector<std::array<double, slots>> gradient_x;  ///< [K] 1/m, smoothed dN/dx (15)
     std::vector<std::array<double, slots>> gradient_y;  ///< [K] 1/m, smoothed dN/dy (15)
     std::vector<std::array<double, slots>> weight;      ///< [K] mean of N over the domain
+    std::vector<std::uint32_t> part;                    ///< [K] of the mesh; tells the material
 
     /// The slots that belong to node I are entry[first[I]] .. entry[first[I+1] - 1], each
     /// slots * domain + slot, in ascending order. A node sums its own in this order, so that a sum
@@ -38,10 +39,13 @@ struct Domains {
 
 /// Domains of a mesh that check_mesh accepts. Edge domains: area sum_e A_e/3, gradient the
 /// area-weighted mean of the triangles' (exact for (15) on linear triangles), weight from the mean
-/// (4 T_i + 4 T_j + T_l)/9 over each sub-triangle of edge ij and centroid.
+/// (4 T_i + 4 T_j + T_l)/9 over each sub-triangle of edge ij and centroid. An edge between two
+/// parts of the mesh makes two domains, one in each: the strain jumps where the material does, and
+/// a mean over both would smear it.
 Domains make_domains(const Mesh& mesh, Smoothing smoothing);
 
 /// A third of the area of the triangles round each node [N] m2: the lumped measure of (19), (25).
-std::vector<double> nodal_area(const Mesh& mesh);
+/// Each triangle counts `density` of its part, 1 where there is none: kg/m for a mass.
+std::vector<double> nodal_area(const Mesh& mesh, const std::vector<double>& density = {});
 
 } // namespace duet::solid

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace duet::solid {
 
@@ -107,7 +108,11 @@ double Solid::exchange_limit(double conductivity, double spacing) const {
         return 0;
     }
     return least_over_segments([&](const BodyConfig& body, double edge) {
-        const double layer = body.material.density * body.material.heat_capacity * edge / 2;
+        double least = std::numeric_limits<double>::infinity();
+        for (const Material& material : body.materials()) {
+            least = std::min(least, material.density * material.heat_capacity);
+        }
+        const double layer = least * edge / 2;
         return layer * (spacing / 2) / conductivity;
     });
 }
@@ -118,7 +123,11 @@ double Solid::added_mass_limit(double fluid_density, double sound_speed) const {
     }
     return least_over_segments([&](const BodyConfig& body, double edge) {
         const bool moves = body.motion == Motion::deformable;
-        return moves ? body.material.density * edge / (fluid_density * sound_speed) : 0;
+        double lightest = std::numeric_limits<double>::infinity();
+        for (const Material& material : body.materials()) {
+            lightest = std::min(lightest, material.density);
+        }
+        return moves ? lightest * edge / (fluid_density * sound_speed) : 0;
     });
 }
 

@@ -1,6 +1,6 @@
 #include "solid_solver/solid_participant.hpp"
 
-#include "protocol/function.hpp"
+#include "solid_solver/solid_scene.hpp"
 #include "solid_solver/state.hpp"
 
 #include <algorithm>
@@ -10,10 +10,6 @@
 namespace duet::solid {
 
 namespace {
-
-Point to_point(const v1::Vector& v) {
-    return {v.x(), v.y()};
-}
 
 /// Runs `work`; what the core throws becomes the failure that the protocol reports.
 template <class Work>
@@ -27,56 +23,7 @@ auto reported(const Work& work) {
     }
 }
 
-BoundaryCondition condition_from_scene(const v1::Boundary& boundary) {
-    BoundaryCondition condition;
-    condition.name = boundary.name();
-    condition.from = to_point(boundary.along(0));
-    condition.to = to_point(boundary.along(1));
-    condition.fixed_x = boundary.fixed_x();
-    condition.fixed_y = boundary.fixed_y();
-    condition.traction = to_point(boundary.traction());
-    if (boundary.has_temperature()) {
-        condition.temperature = boundary.temperature();
-    }
-    condition.heat_flux = boundary.heat_flux();
-    if (boundary.has_convection()) {
-        condition.convection =
-            Convection{boundary.convection().coefficient(), boundary.convection().temperature()};
-    }
-    return condition;
-}
-
 } // namespace
-
-BodyConfig config_from_scene(const v1::Body& body, unsigned threads) {
-    BodyConfig config;
-    config.name = body.name();
-    config.mesh = rectangle_mesh(to_point(body.rectangle().corner()),
-                                 body.rectangle().width(),
-                                 body.rectangle().height(),
-                                 body.element_size());
-    config.motion = body.motion() == v1::Body::DEFORMABLE ? Motion::deformable : Motion::fixed;
-    config.material.density = body.density();
-    config.material.heat_capacity = body.heat_capacity();
-    config.material.conductivity = body.conductivity();
-    config.material.youngs_modulus = body.youngs_modulus();
-    config.material.poissons_ratio = body.poissons_ratio();
-    config.material.thermal_expansion = body.thermal_expansion();
-    config.initial_temperature =
-        protocol::number_of(body.initial_temperature(), "initial_temperature of a body");
-    config.reference_temperature = body.has_reference_temperature() ? body.reference_temperature()
-                                                                    : config.initial_temperature;
-    config.initial_velocity = to_point(body.initial_velocity());
-    config.heat_source = body.heat_source();
-    config.body_force = to_point(body.body_force());
-    config.stiffness_damping = body.stiffness_damping();
-    config.thermoelastic_heating = body.thermoelastic_heating();
-    for (const v1::Boundary& boundary : body.boundary()) {
-        config.boundary.push_back(condition_from_scene(boundary));
-    }
-    config.threads = static_cast<int>(std::max(threads, 1u));
-    return config;
-}
 
 std::string Participant::name() const {
     return "duet-solid " DUET_VERSION;
@@ -89,12 +36,12 @@ void Participant::configure(const v1::Configure& configure,
     scene_ = configure.scene();
     std::vector<Point> region;
     for (const v1::Vector& corner : scene_.fluid().region()) {
-        region.push_back(to_point(corner));
+        region.emplace_back(corner.x(), corner.y());
     }
     reported([&] {
         std::vector<BodyConfig> bodies;
         for (const v1::Body& body : scene_.solid().body()) {
-            bodies.push_back(config_from_scene(body, configure.threads()));
+            bodies.push_back(config_from_scene(body, configure.threads(), configure.run_folder()));
         }
         solid_ = std::make_unique<Solid>(std::move(bodies), region);
         probes_ = Probes(scene_, *solid_);
@@ -172,7 +119,7 @@ void Participant::fill(v1::Ledger& ledger) const {
     double work = 0, kinetic = 0, strain = 0;
     for (const Body& body : solid_->bodies()) {
         const HeatAccount& account = body.heat().account();
-        mass += body.config().material.density * body.area();
+        mass += body.mass();
         heat += body.heat().stored();
         walls += account.walls;
         sources += account.sources + account.thermoelastic;

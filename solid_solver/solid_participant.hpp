@@ -12,9 +12,6 @@
 
 namespace duet::solid {
 
-/// One body of the scene as the core takes it.
-BodyConfig config_from_scene(const v1::Body& body, unsigned threads);
-
 class Participant : public protocol::SolidSolver {
   public:
     std::string name() const override;

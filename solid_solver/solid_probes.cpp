@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 
 namespace duet::solid {
@@ -13,7 +14,7 @@ namespace {
 
 using Stress = std::vector<PlaneTensor>; ///< of a body's nodes
 
-struct Field {
+struct Quantity {
     const char* name;
     bool odd;       ///< changes sign in a vertical mirror
     bool of_stress; ///< a fixed body has none
@@ -25,7 +26,7 @@ double displacement(const Body& body, std::uint32_t node, Eigen::Index d) {
            - body.config().mesh.node[node][d];
 }
 
-constexpr Field fields[] = {
+constexpr Quantity fields[] = {
     {"temperature",
      false,
      false,
@@ -131,7 +132,8 @@ std::vector<std::size_t> bodies_of(const v1::Probe& probe, const Solid& solid) {
 }
 
 double capacity(const Body& body) {
-    return body.config().material.density * body.config().material.heat_capacity * body.area();
+    const auto nodal = body.heat().capacity();
+    return std::accumulate(nodal.begin(), nodal.end(), 0.0);
 }
 
 double
@@ -172,7 +174,7 @@ Probes::Probes(const v1::Scene& scene, const Solid& solid) {
             prepared_.push_back(std::move(prepared));
             continue;
         }
-        const Field& field = known(fields, probe, "at points");
+        const Quantity& field = known(fields, probe, "at points");
         bool found = false;
         for (const v1::Vector& point : protocol::probe_points(probe)) {
             std::optional<Place> place;
@@ -210,7 +212,7 @@ void Probes::take(const Solid& solid,
                 protocol::integral_sample(probe, time, joined(integral, solid, prepared.bodies));
             continue;
         }
-        const Field& field = known(fields, probe, "at points");
+        const Quantity& field = known(fields, probe, "at points");
         std::vector<double> values;
         for (const std::optional<Place>& place : prepared.points) {
             if (!place) {

@@ -8,5 +8,5 @@ duet_test(solid_verification LABEL verification
     LIBRARIES duet_solid_core)
 
 duet_test(solid_participant_unit LABEL unit
-    SOURCES unit/solid_participant.cpp
+    SOURCES unit/solid_participant.cpp unit/solid_msh.cpp
     LIBRARIES duet_solid_participant)

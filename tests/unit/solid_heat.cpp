@@ -39,7 +39,7 @@ Eigen::MatrixXd dense_conduction(const Mesh& mesh, double conductivity) {
 
 TEST(SolidConduction, AgreesWithTheDenseMatrix) {
     const Mesh mesh = test::distorted_square(5);
-    const Conduction conduction(make_domains(mesh, Smoothing::edge), 0.7);
+    const Conduction conduction(make_domains(mesh, Smoothing::edge), {0.7});
     const Eigen::MatrixXd dense = dense_conduction(mesh, 0.7);
     const auto n = static_cast<Eigen::Index>(mesh.node.size());
     test::Noise noise;
@@ -67,7 +67,7 @@ TEST(SolidConduction, LinearTemperatureIsSteady) {
     // Heat patch test: with T = a + b x + c y on the boundary the inner nodes feel no change.
     const Mesh mesh = test::distorted_square(6);
     const Domains domains = make_domains(mesh, Smoothing::edge);
-    const Conduction conduction(domains, 2.5);
+    const Conduction conduction(domains, {2.5});
     std::vector<double> t, none(mesh.node.size(), 0.0), one(mesh.node.size(), 1.0);
     for (const Point& p : mesh.node) {
         t.push_back(3 + 2 * p.x() - 5 * p.y());

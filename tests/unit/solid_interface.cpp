@@ -1,4 +1,5 @@
 #include "solid_solver/interface.hpp"
+#include "solid_solver/shapes.hpp"
 
 #include <gtest/gtest.h>
 

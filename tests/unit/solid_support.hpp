@@ -3,6 +3,7 @@
 #pragma once
 
 #include "solid_solver/body.hpp"
+#include "solid_solver/shapes.hpp"
 
 #include <cmath>
 #include <cstdint>

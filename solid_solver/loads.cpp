@@ -1,0 +1,105 @@
+#include "solid_solver/loads.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace duet::solid {
+
+namespace {
+
+/// The node nearest to a place.
+std::uint32_t nearest_node(const Mesh& mesh, const Point& place) {
+    const auto nearer = [&](const Point& a, const Point& b) {
+        return (a - place).squaredNorm() < (b - place).squaredNorm();
+    };
+    return static_cast<std::uint32_t>(std::min_element(mesh.node.begin(), mesh.node.end(), nearer)
+                                      - mesh.node.begin());
+}
+
+} // namespace
+
+Loads::Loads(const BodyConfig& body, std::span<const double> mass) : place_(body.mesh.node) {
+    for (const double m : mass) {
+        body_force_.insert(body_force_.end(), {m * body.body_force.x(), m * body.body_force.y()});
+    }
+    const std::vector<Edge> boundary = boundary_edges(body.mesh);
+    for (const BoundaryCondition& condition : body.boundary) {
+        const std::array<const std::optional<Field>*, 2> displacement{&condition.displacement_x,
+                                                                      &condition.displacement_y};
+        const std::array<const std::optional<Field>*, 2> velocity{&condition.velocity_x,
+                                                                  &condition.velocity_y};
+        const std::array<bool, 2> fixed{condition.fixed_x, condition.fixed_y};
+        for (std::size_t d = 0; d < 2; ++d) {
+            if (fixed[d] + displacement[d]->has_value() + velocity[d]->has_value() > 1) {
+                throw std::invalid_argument(
+                    "Boundary '" + condition.name + "' of body '" + body.name
+                    + "' tells the motion along " + (d == 0 ? "x" : "y")
+                    + " twice; keep one of fixed, displacement and velocity.");
+            }
+        }
+        for (const Edge& edge : edges_of(condition, body, boundary)) {
+            if (!condition.traction.zero() || !condition.pressure.zero()) {
+                edge_.push_back({edge.a, edge.b, condition.traction, condition.pressure});
+                varies_ = varies_ || !condition.traction.steady() || !condition.pressure.zero();
+            }
+            for (const std::uint32_t i : {edge.a, edge.b}) {
+                for (int d = 0; d < 2; ++d) {
+                    const auto k = static_cast<std::size_t>(d);
+                    if (*displacement[k]) {
+                        hold(i, d, **displacement[k], false);
+                    } else if (*velocity[k]) {
+                        hold(i, d, **velocity[k], true);
+                    } else if (fixed[k]) {
+                        hold(i, d, 0, false);
+                    }
+                }
+            }
+        }
+    }
+    for (const PointLoad& load : body.point_load) {
+        point_.push_back({nearest_node(body.mesh, load.at), load.force});
+        varies_ = varies_ || !load.force.steady();
+    }
+}
+
+void Loads::hold(std::uint32_t node, int direction, const Field& value, bool velocity) {
+    const std::uint32_t component = 2 * node + static_cast<std::uint32_t>(direction);
+    const auto at =
+        std::lower_bound(held_.begin(), held_.end(), component, [](const Held& h, std::uint32_t c) {
+            return h.component < c;
+        });
+    if (at != held_.end() && at->component == component) {
+        *at = {component, place_[node], value, velocity}; // the later condition rules
+    } else {
+        held_.insert(at, {component, place_[node], value, velocity});
+    }
+    moves_ = moves_ || !value.zero();
+}
+
+void Loads::forces(double time, std::span<const double> position, std::span<double> out) const {
+    std::copy(body_force_.begin(), body_force_.end(), out.begin());
+    const auto add = [&](std::uint32_t node, const Point& force) {
+        out[2 * node] += force.x();
+        out[2 * node + 1] += force.y();
+    };
+    for (const OnEdge& edge : edge_) {
+        const double sixth = (place_[edge.b] - place_[edge.a]).norm() / 6;
+        const Point a = edge.traction(place_[edge.a], time),
+                    b = edge.traction(place_[edge.b], time);
+        add(edge.a, sixth * (2 * a + b));
+        add(edge.b, sixth * (a + 2 * b));
+        if (!edge.pressure.zero()) { // the body lies to the left of the way from a to b
+            const Point inward(-(position[2 * edge.b + 1] - position[2 * edge.a + 1]),
+                               position[2 * edge.b] - position[2 * edge.a]);
+            const double p = edge.pressure(place_[edge.a], time);
+            const double q = edge.pressure(place_[edge.b], time);
+            add(edge.a, (2 * p + q) / 6 * inward);
+            add(edge.b, (p + 2 * q) / 6 * inward);
+        }
+    }
+    for (const OnNode& point : point_) {
+        add(point.node, point.force(place_[point.node], time));
+    }
+}
+
+} // namespace duet::solid

@@ -1,0 +1,138 @@
+#include "solid_solver/solid_scene.hpp"
+
+#include "protocol/function.hpp"
+#include "solid_solver/mesh_file.hpp"
+#include "solid_solver/shapes.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace duet::solid {
+
+namespace {
+
+Point to_point(const v1::Vector& v) {
+    return {v.x(), v.y()};
+}
+
+Field to_field(const v1::Function& given) {
+    if (!given.has_formula() && !given.has_table()) {
+        return given.number();
+    }
+    const protocol::Function function(given);
+    return Field([function](const Point& p, double t) { return function(p.x(), p.y(), t); },
+                 function.depends_on_time());
+}
+
+BoundaryCondition condition_from_scene(const v1::Boundary& boundary) {
+    BoundaryCondition condition;
+    condition.name = boundary.name();
+    condition.curve = boundary.curve();
+    if (boundary.along_size() == 2) {
+        condition.from = to_point(boundary.along(0));
+        condition.to = to_point(boundary.along(1));
+    }
+    condition.fixed_x = boundary.fixed_x();
+    condition.fixed_y = boundary.fixed_y();
+    condition.traction = to_point(boundary.traction());
+    if (boundary.has_temperature()) {
+        condition.temperature = to_field(boundary.temperature());
+    }
+    condition.heat_flux = to_field(boundary.heat_flux());
+    if (boundary.has_convection()) {
+        condition.convection = Convection{boundary.convection().coefficient(),
+                                          to_field(boundary.convection().temperature())};
+    }
+    return condition;
+}
+
+Mesh mesh_from_scene(const v1::Body& body, const std::filesystem::path& folder) {
+    if (!body.mesh().empty()) {
+        return read_mesh_file(
+            body.mesh(), {body.part().begin(), body.part().end()}, body.element_size(), folder);
+    }
+    if (body.has_disc()) {
+        return disc_mesh(to_point(body.disc().centre()), body.disc().radius(), body.element_size());
+    }
+    if (body.has_ring()) {
+        return ring_mesh(to_point(body.ring().centre()),
+                         body.ring().inner_radius(),
+                         body.ring().outer_radius(),
+                         body.element_size());
+    }
+    return rectangle_mesh(to_point(body.rectangle().corner()),
+                          body.rectangle().width(),
+                          body.rectangle().height(),
+                          body.element_size());
+}
+
+/// Puts in what a table of the scene gives and leaves the rest as it is.
+template <class Table>
+void put_material(const Table& table, Material& material) {
+    const auto put = [](bool given, double value, double& place) {
+        if (given) {
+            place = value;
+        }
+    };
+    put(table.has_density(), table.density(), material.density);
+    put(table.has_heat_capacity(), table.heat_capacity(), material.heat_capacity);
+    put(table.has_conductivity(), table.conductivity(), material.conductivity);
+    put(table.has_youngs_modulus(), table.youngs_modulus(), material.youngs_modulus);
+    put(table.has_poissons_ratio(), table.poissons_ratio(), material.poissons_ratio);
+    put(table.has_thermal_expansion(), table.thermal_expansion(), material.thermal_expansion);
+}
+
+/// The materials in the order of the mesh's parts, if the scene gives any.
+std::vector<Material> part_materials(const v1::Body& body, const BodyConfig& config) {
+    if (body.material().empty()) {
+        return {};
+    }
+    const std::vector<std::string>& names = config.mesh.part_name;
+    std::vector<Material> materials(names.size(), config.material);
+    for (const v1::Material& table : body.material()) {
+        const auto part = std::find(names.begin(), names.end(), table.part());
+        if (part == names.end()) {
+            std::string known;
+            for (const std::string& name : names) {
+                known += (known.empty() ? "" : ", ") + name;
+            }
+            throw std::invalid_argument("Body '" + body.name() + "' gives a material for the part '"
+                                        + table.part() + "', which its mesh does not have; its "
+                                        + "parts are " + known + ".");
+        }
+        put_material(table, materials[static_cast<std::size_t>(part - names.begin())]);
+    }
+    return materials;
+}
+
+} // namespace
+
+BodyConfig
+config_from_scene(const v1::Body& body, unsigned threads, const std::filesystem::path& folder) {
+    BodyConfig config;
+    config.name = body.name();
+    config.mesh = mesh_from_scene(body, folder);
+    config.motion = body.motion() == v1::Body::DEFORMABLE ? Motion::deformable : Motion::fixed;
+    put_material(body, config.material);
+    config.part_material = part_materials(body, config);
+    config.initial_temperature = to_field(body.initial_temperature());
+    if (body.has_reference_temperature()) {
+        config.reference_temperature = body.reference_temperature();
+    } else if (config.motion == Motion::deformable) {
+        config.reference_temperature =
+            protocol::number_of(body.initial_temperature(),
+                                "initial_temperature of a body without reference_temperature");
+    }
+    config.initial_velocity = to_point(body.initial_velocity());
+    config.heat_source = body.heat_source();
+    config.body_force = to_point(body.body_force());
+    config.stiffness_damping = body.stiffness_damping();
+    config.thermoelastic_heating = body.thermoelastic_heating();
+    for (const v1::Boundary& boundary : body.boundary()) {
+        config.boundary.push_back(condition_from_scene(boundary));
+    }
+    config.threads = static_cast<int>(std::max(threads, 1u));
+    return config;
+}
+
+} // namespace duet::solid
