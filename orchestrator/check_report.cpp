@@ -181,13 +181,14 @@ void describe_fluid(const v1::Scene& scene, const Estimate& e, std::string& out)
 
 void describe_solid(const v1::Scene& scene, const Estimate& e, std::string& out) {
     for (const v1::Body& body : scene.solid().body()) {
-        const bool moves = body.motion() == v1::Body::DEFORMABLE;
         out += "solid   body '" + body.name() + "': "
                + (body.mesh().empty() ? count(nodes_of(body)) + " nodes, edge "
                                             + number_text(body.element_size()) + " m"
                                       : "mesh " + body.mesh())
                + "; mechanics: "
-               + (moves ? "thermo-elastic, finite deformation" : "left out (fixed and rigid)")
+               + (body.motion() == v1::Body::DEFORMABLE   ? "thermo-elastic, finite deformation"
+                  : body.motion() == v1::Body::PRESCRIBED ? "left out (rigid, moved as prescribed)"
+                                                          : "left out (fixed and rigid)")
                + "; heat: " + (e.heat ? "conduction" : "left out (one temperature everywhere)")
                + "\n";
     }

@@ -36,6 +36,10 @@ bool is_zero(const v1::Function& function) {
     return !function.has_formula() && !function.has_table() && function.number() == 0;
 }
 
+bool is_zero(const v1::VectorFunction& function) {
+    return is_zero(function.x()) && is_zero(function.y());
+}
+
 class Checker {
   public:
     explicit Checker(const Case& given) : case_(given), scene_(given.scene) {
@@ -78,6 +82,8 @@ class Checker {
     void check_rectangle(const v1::Body& body, const std::string& path);
     void
     check_boundary(const v1::Boundary& boundary, const v1::Body& body, const std::string& path);
+    void
+    check_conditions(const v1::Boundary& boundary, const v1::Body& body, const std::string& path);
     void check_probe(const v1::Probe& probe, const std::string& path);
     void check_place(const v1::Probe& probe, const Point& p, const std::string& path);
     void check_check(const v1::Check& check, const std::string& path);
@@ -198,11 +204,19 @@ void Checker::check_bodies() {
 
 void Checker::check_body(const v1::Body& body, const std::string& path) {
     check_shape(body, path);
-    const bool moving = body.initial_velocity().x() != 0 || body.initial_velocity().y() != 0;
-    if (body.motion() == v1::Body::FIXED && moving)
+    if (body.motion() != v1::Body::DEFORMABLE && !is_zero(body.initial_velocity()))
         problem(path + ".initial_velocity",
-                "a body with motion = \"fixed\" cannot have a velocity; did you mean motion = "
-                "\"deformable\"?");
+                "only a body with motion = \"deformable\" has an initial velocity; a prescribed "
+                "motion has that of its displacement");
+    if (body.motion() != v1::Body::DEFORMABLE && !is_zero(body.initial_displacement()))
+        problem(path + ".initial_displacement",
+                "only a body with motion = \"deformable\" has an initial displacement; put the "
+                "body where it starts");
+    if (body.motion() != v1::Body::DEFORMABLE && body.point_load_size() > 0)
+        problem(path + ".point_load", "only a body with motion = \"deformable\" takes point loads");
+    if (body.motion() != v1::Body::PRESCRIBED
+        && (!is_zero(body.displacement()) || !is_zero(body.angle())))
+        problem(path, "displacement and angle move a body with motion = \"prescribed\" alone");
     if (body.motion() == v1::Body::DEFORMABLE && !body.has_youngs_modulus())
         problem(path, "the deformable body '" + body.name() + "' lacks the key 'youngs_modulus'");
     check_names(path + ".boundary", body.boundary());
@@ -267,6 +281,7 @@ void Checker::check_boundary(const v1::Boundary& boundary,
                              const std::string& path) {
     if ((boundary.along_size() > 0) != boundary.curve().empty())
         return problem(path, path + " needs either 'along' or 'curve' to say where it is");
+    check_conditions(boundary, body, path);
     if (boundary.has_temperature() && (!is_zero(boundary.heat_flux()) || boundary.has_convection()))
         problem(path + ".temperature",
                 path + " prescribes a temperature and a heat flux or convection; keep one of them");
@@ -292,6 +307,26 @@ void Checker::check_boundary(const v1::Boundary& boundary,
     if (found <= tolerance_)
         problem(path + ".along",
                 "no side of the body lies between " + at_text(a) + " and " + at_text(b));
+}
+
+/// What is prescribed on a boundary goes together, and with the body.
+void Checker::check_conditions(const v1::Boundary& boundary,
+                               const v1::Body& body,
+                               const std::string& path) {
+    const auto once = [&](const char* along, bool fixed, bool displacement, bool velocity) {
+        if (fixed + displacement + velocity > 1)
+            problem(path,
+                    path + " tells the motion along " + along
+                        + " twice; keep one of fixed, displacement and velocity");
+    };
+    once("x", boundary.fixed_x(), boundary.has_displacement_x(), boundary.has_velocity_x());
+    once("y", boundary.fixed_y(), boundary.has_displacement_y(), boundary.has_velocity_y());
+    const bool mechanical = boundary.has_displacement_x() || boundary.has_displacement_y()
+                            || boundary.has_velocity_x() || boundary.has_velocity_y()
+                            || !is_zero(boundary.traction()) || !is_zero(boundary.pressure());
+    if (mechanical && body.motion() != v1::Body::DEFORMABLE)
+        problem(path,
+                "only a body with motion = \"deformable\" is loaded or moved at its boundary");
 }
 
 void Checker::check_probe(const v1::Probe& probe, const std::string& path) {

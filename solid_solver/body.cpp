@@ -1,5 +1,7 @@
 #include "solid_solver/body.hpp"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -54,12 +56,43 @@ Body::Body(BodyConfig config)
         rest_position_.push_back(p.x());
         rest_position_.push_back(p.y());
     }
+    if (config_.motion == Motion::prescribed) {
+        move_rigidly(0);
+    }
+}
+
+/// Puts the nodes of a prescribed body where they are now, x = c + d(t) + R(t) (X - c), with the
+/// velocity of that course there: its difference over a ten-thousandth of the last window.
+void Body::move_rigidly(double length) {
+    const RigidMotion& motion = config_.rigid_motion;
+    const auto place = [&](const Point& from, double time) -> Point {
+        const Eigen::Rotation2Dd turn(motion.angle(motion.centre, time));
+        return motion.centre + motion.displacement(motion.centre, time)
+               + turn * (from - motion.centre);
+    };
+    const double reach = length > 0 ? 1e-4 * length : 1e-6;
+    const double before = std::max(0.0, time_ - reach), after = time_ + reach;
+    for (std::size_t i = 0; i < nodes(); ++i) {
+        const Point from = config_.mesh.node[i];
+        const Point x = place(from, time_);
+        const Point v = (place(from, after) - place(from, before)) / (after - before);
+        for (std::size_t d = 0; d < 2; ++d) {
+            const auto k = static_cast<Eigen::Index>(d);
+            if (!rest_force_.empty()) {
+                work_ += rest_force_[2 * i + d] * (x[k] - rest_position_[2 * i + d]);
+            }
+            rest_position_[2 * i + d] = x[k];
+            rest_velocity_[2 * i + d] = v[k];
+        }
+    }
 }
 
 void Body::set_interface_load(std::span<const double> heat, std::span<const double> force) {
     heat_.set_interface_heat(heat);
     if (mechanics_) {
         mechanics_->set_interface_force(force);
+    } else {
+        rest_force_.assign(force.begin(), force.end());
     }
 }
 
@@ -89,6 +122,9 @@ void Body::step(double dt) {
 
 std::uint32_t Body::advance(double length) {
     const std::uint32_t steps = implicit_ ? advance_implicitly(length) : advance_explicitly(length);
+    if (config_.motion == Motion::prescribed) {
+        move_rigidly(length);
+    }
     check_finite();
     return steps;
 }

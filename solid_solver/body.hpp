@@ -71,11 +71,18 @@ class Body {
             implicit_->visit_state(visit);
         }
         visit(time_);
+        visit(rest_position_);
+        visit(rest_velocity_);
+        visit(work_);
         visit(steps_since_update_);
     }
 
+    /// J/m that the interface forces have done on it since the start.
+    double interface_work() const { return mechanics_ ? mechanics_->interface_work() : work_; }
+
   private:
     void check_finite() const;
+    void move_rigidly(double length);
     std::uint32_t advance_explicitly(double length);
     std::uint32_t advance_implicitly(double length);
 
@@ -85,7 +92,9 @@ class Body {
     Heat heat_;
     std::optional<Mechanics> mechanics_;
     std::optional<Implicit> implicit_;
-    std::vector<double> rest_position_, rest_velocity_; ///< of a fixed body
+    std::vector<double> rest_position_, rest_velocity_; ///< of a rigid body
+    std::vector<double> rest_force_;                    ///< N/m, of the interface on it
+    double work_ = 0;                                   ///< J/m, of the interface on it
     double time_ = 0;                                   ///< s since the start
     double steps_since_update_ = 0;
 };

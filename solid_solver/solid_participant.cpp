@@ -124,8 +124,8 @@ void Participant::fill(v1::Ledger& ledger) const {
         walls += account.walls;
         sources += account.sources + account.thermoelastic;
         thermoelastic += account.thermoelastic;
+        work += body.interface_work();
         if (body.mechanics()) {
-            work += body.mechanics()->interface_work();
             kinetic += body.mechanics()->kinetic_energy();
             strain += body.mechanics()->strain_energy();
         }
@@ -151,10 +151,13 @@ void Participant::describe(v1::Ready& ready) const {
     for (const Body& body : solid_->bodies()) {
         std::ostringstream line;
         line << "body " << body.config().name << ": "
-             << (body.deformable() ? "deformable, total Lagrangian" : "fixed, heat alone") << ", "
-             << body.nodes() << " nodes, " << body.config().mesh.triangle.size() << " triangles, "
-             << body.domains().size() << " smoothing domains, stable step " << body.stable_step()
-             << " s";
+             << (body.deformable() ? "deformable, total Lagrangian"
+                 : body.config().motion == Motion::prescribed
+                     ? "rigid, moved as prescribed, heat alone"
+                     : "fixed, heat alone")
+             << ", " << body.nodes() << " nodes, " << body.config().mesh.triangle.size()
+             << " triangles, " << body.domains().size() << " smoothing domains, stable step "
+             << body.stable_step() << " s";
         ready.add_model(line.str());
         unknowns += body.nodes();
     }
@@ -164,8 +167,9 @@ void Participant::describe(v1::Ready& ready) const {
 /// All bodies in one frame, one behind the other.
 void Participant::write_snapshot() {
     const auto& bodies = solid_->bodies();
-    const bool moving =
-        std::any_of(bodies.begin(), bodies.end(), [](const Body& b) { return b.deformable(); });
+    const bool moving = std::any_of(bodies.begin(), bodies.end(), [](const Body& b) {
+        return b.config().motion != Motion::fixed;
+    });
     std::vector<double> position, velocity, displacement, temperature, von_mises;
     std::vector<std::uint32_t> connectivity;
     for (const Body& body : bodies) {

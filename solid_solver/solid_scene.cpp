@@ -24,6 +24,10 @@ Field to_field(const v1::Function& given) {
                  function.depends_on_time());
 }
 
+VectorField to_field(const v1::VectorFunction& given) {
+    return {to_field(given.x()), to_field(given.y())};
+}
+
 BoundaryCondition condition_from_scene(const v1::Boundary& boundary) {
     BoundaryCondition condition;
     condition.name = boundary.name();
@@ -34,10 +38,18 @@ BoundaryCondition condition_from_scene(const v1::Boundary& boundary) {
     }
     condition.fixed_x = boundary.fixed_x();
     condition.fixed_y = boundary.fixed_y();
-    condition.traction = to_point(boundary.traction());
-    if (boundary.has_temperature()) {
-        condition.temperature = to_field(boundary.temperature());
-    }
+    const auto put = [](bool given, const v1::Function& value, std::optional<Field>& place) {
+        if (given) {
+            place = to_field(value);
+        }
+    };
+    put(boundary.has_displacement_x(), boundary.displacement_x(), condition.displacement_x);
+    put(boundary.has_displacement_y(), boundary.displacement_y(), condition.displacement_y);
+    put(boundary.has_velocity_x(), boundary.velocity_x(), condition.velocity_x);
+    put(boundary.has_velocity_y(), boundary.velocity_y(), condition.velocity_y);
+    put(boundary.has_temperature(), boundary.temperature(), condition.temperature);
+    condition.traction = to_field(boundary.traction());
+    condition.pressure = to_field(boundary.pressure());
     condition.heat_flux = to_field(boundary.heat_flux());
     if (boundary.has_convection()) {
         condition.convection = Convection{boundary.convection().coefficient(),
@@ -112,7 +124,11 @@ config_from_scene(const v1::Body& body, unsigned threads, const std::filesystem:
     BodyConfig config;
     config.name = body.name();
     config.mesh = mesh_from_scene(body, folder);
-    config.motion = body.motion() == v1::Body::DEFORMABLE ? Motion::deformable : Motion::fixed;
+    config.motion = body.motion() == v1::Body::DEFORMABLE   ? Motion::deformable
+                    : body.motion() == v1::Body::PRESCRIBED ? Motion::prescribed
+                                                            : Motion::fixed;
+    config.rigid_motion = {
+        to_point(body.centre()), to_field(body.displacement()), to_field(body.angle())};
     put_material(body, config.material);
     config.part_material = part_materials(body, config);
     config.initial_temperature = to_field(body.initial_temperature());
@@ -123,13 +139,17 @@ config_from_scene(const v1::Body& body, unsigned threads, const std::filesystem:
             protocol::number_of(body.initial_temperature(),
                                 "initial_temperature of a body without reference_temperature");
     }
-    config.initial_velocity = to_point(body.initial_velocity());
+    config.initial_displacement = to_field(body.initial_displacement());
+    config.initial_velocity = to_field(body.initial_velocity());
     config.heat_source = body.heat_source();
     config.body_force = to_point(body.body_force());
     config.stiffness_damping = body.stiffness_damping();
     config.thermoelastic_heating = body.thermoelastic_heating();
     for (const v1::Boundary& boundary : body.boundary()) {
         config.boundary.push_back(condition_from_scene(boundary));
+    }
+    for (const v1::PointLoad& load : body.point_load()) {
+        config.point_load.push_back({load.name(), to_point(load.at()), to_field(load.force())});
     }
     config.threads = static_cast<int>(std::max(threads, 1u));
     return config;

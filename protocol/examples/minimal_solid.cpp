@@ -88,8 +88,8 @@ class MinimalSolid final : public SolidSolver {
                 chain.nodes.push_back(static_cast<std::uint32_t>(start.nodes()));
                 for (int d = 0; d < 2; ++d)
                     start.position.push_back(a[d] + (b[d] - a[d]) * j / segments);
-                start.velocity.push_back(body.initial_velocity().x());
-                start.velocity.push_back(body.initial_velocity().y());
+                start.velocity.push_back(body.initial_velocity().x().number());
+                start.velocity.push_back(body.initial_velocity().y().number());
                 start.temperature.push_back(temperature_);
             }
         }

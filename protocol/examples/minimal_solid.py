@@ -27,7 +27,7 @@ class MinimalSolid(duet.SolidSolver):
         if self.scene.HasField("fluid"):
             position = self.outline(body)
             nodes = len(position)
-            velocity = np.tile([body.initial_velocity.x, body.initial_velocity.y], (nodes, 1))
+            velocity = np.tile([body.initial_velocity.x.number, body.initial_velocity.y.number], (nodes, 1))
             temperature = np.full(nodes, self.temperature)
             chains = [duet.Chain(range(nodes), closed=True)]
             start = duet.InterfaceMotion(position, velocity, temperature)

@@ -72,7 +72,7 @@ v1::Scene small_scene() {
     body.mutable_rectangle()->set_height(0.5);
     body.set_element_size(0.1);
     body.mutable_initial_temperature()->set_number(350);
-    body.mutable_initial_velocity()->set_x(0.25);
+    body.mutable_initial_velocity()->mutable_x()->set_number(0.25);
     scene.mutable_fluid()->mutable_initial_temperature()->set_number(300);
     return scene;
 }

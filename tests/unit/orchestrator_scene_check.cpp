@@ -106,7 +106,7 @@ TEST(SceneCheck, Bodies) {
     expect_fault("solid.body[0].rectangle.width=4", "reaches out of fluid.region");
     expect_fault("solid.body[0].element_size=1.5", "larger than the body's shorter side");
     expect_fault("solid.body[0].motion=\"deformable\"", "lacks the key 'youngs_modulus'");
-    expect_fault("solid.body[0].initial_velocity=[1, 0]", "cannot have a velocity");
+    expect_fault("solid.body[0].initial_velocity=[1, 0]", "has an initial velocity");
     expect_fault("solid.body[0].boundary[0].along=[[1, 0.5], [3, 0.5]]",
                  "no side of the body lies between");
     EXPECT_NE(problems(good,
