@@ -130,11 +130,11 @@ TEST(SolidMsh, EachFaultIsToldWithItsLine) {
     expect(refusal(with("4.1 0 8", "4.1 1 8")), "binary");
     expect(refusal("solid ascii\n"), "line 1: 'solid' stands outside any section");
     expect(refusal("$Nodes\n"), "starts with $MeshFormat");
-    expect(refusal(with("2 1 2 2\n4 1 2 5", "2 1 3 1\n4 1 2 5 4")), "line 51: elements of type 3");
+    expect(refusal(with("2 1 2 2\n4 1 2 5", "2 1 3 1\n4 1 2 5 4")), "line 46: elements of type 3");
     expect(refusal(with("2 1 2 2\n4 1 2 5", "2 1 9 2\n4 1 2 5")), "first order");
     expect(refusal(with("6 2 6 3", "6 2 6 8")), "node 8");
     expect(refusal(with("2 1 0\n$EndNodes", "2 1 0.5\n$EndNodes")), "lies at z = 0.5");
-    expect(refusal(with("2 1 0\n$EndNodes", "2 one 0\n$EndNodes")), "line 40: the line should");
+    expect(refusal(with("2 1 0\n$EndNodes", "2 one 0\n$EndNodes")), "line 36: the line should");
     expect(refusal(with("$EndElements\n", "")), "ends within the section $Elements");
     expect(refusal(with("2 2 2 2\n", "2 2 2 1\n")), "where $EndElements should");
     expect(refusal(two_squares(), {"iron"}), "no physical surface 'iron'; it has brass, steel");
