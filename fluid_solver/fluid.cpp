@@ -346,54 +346,64 @@ void Fluid::Implementation::level() {
     if (config.pressure_level == PressureLevel::free) {
         return;
     }
-    for (std::size_t k = 0; k < compartments; ++k) {
-        const auto mean = [&](const auto& value) {
-            const auto of_compartment = [&](std::size_t a) {
-                return particles.compartment[a] == k ? value(a) : 0.0;
-            };
-            return sum(of_compartment) / compartment_size_[k];
-        };
-        const double p = mean([&](std::size_t a) { return particles.fields[a].p; });
-        if (buoyant_) {
-            hydrostatics_.levels[k] = {mean([&](std::size_t a) { return particles.fields[a].T; }),
-                                       {mean([&](std::size_t a) { return particles.x[a]; }),
-                                        mean([&](std::size_t a) { return particles.y[a]; })}};
+    const std::size_t n = particles.size();
+    means_.assign(chunks_of(n) * compartments, Lanes{});
+    for_chunks(n, config.threads, [&](std::size_t c, std::size_t first, std::size_t last) {
+        for (std::size_t a = first; a < last; ++a) {
+            const Fields& f = particles.fields[a];
+            means_[c * compartments + particles.compartment[a]] +=
+                Lanes{f.p, f.T, particles.x[a], particles.y[a]};
         }
-        for_particles(particles.size(), config.threads, [&](std::size_t a) {
-            particles.fields[a].p -= particles.compartment[a] == k ? p : 0;
-        });
+    });
+    // The first chunk's place takes the means: sums over the chunks, in their order.
+    for (std::size_t k = 0; k < compartments; ++k) {
+        for (std::size_t c = 1; c < chunks_of(n); ++c) {
+            means_[k] += means_[c * compartments + k];
+        }
+        means_[k] /= compartment_size_[k];
+        if (buoyant_) {
+            hydrostatics_.levels[k] = {means_[k][1], {means_[k][2], means_[k][3]}};
+        }
     }
+    for_particles(n, config.threads, [&](std::size_t a) {
+        particles.fields[a].p -= means_[particles.compartment[a]][0];
+    });
 }
 
 void Fluid::Implementation::measure() {
     const std::size_t n = particles.size();
-    extrema_.resize(chunks_of(n));
+    extremes_.resize(chunks_of(n));
     for_chunks(n, config.threads, [&](std::size_t c, std::size_t first, std::size_t last) {
-        std::array<double, 4> e{0, -1e300, -1e300, 0};
+        Extremes e;
         for (std::size_t a = first; a < last; ++a) {
             const Fields& f = particles.fields[a];
-            e[0] = std::max(e[0], f.u * f.u + f.v * f.v);
-            e[1] = std::max(e[1], -f.p);
-            e[2] = std::max(e[2], f.p);
-            e[3] += std::isfinite(f.u + f.v + f.p + f.T + particles.x[a] + particles.y[a]) ? 0 : 1;
+            e.speed2 = std::max(e.speed2, f.u * f.u + f.v * f.v);
+            e.lowest = std::min(e.lowest, f.p);
+            e.highest = std::max(e.highest, f.p);
+            e.body_force += norm(hydrostatics_.departure(f.T, particles.compartment[a]));
+            e.lost +=
+                std::isfinite(f.u + f.v + f.p + f.T + particles.x[a] + particles.y[a]) ? 0 : 1;
         }
-        extrema_[c] = e;
+        extremes_[c] = e;
     });
-    std::array<double, 4> e = extrema_[0];
-    for (const auto& other : extrema_) {
-        e = {std::max(e[0], other[0]),
-             std::max(e[1], other[1]),
-             std::max(e[2], other[2]),
-             e[3] + other[3]};
+    Extremes e = extremes_[0];
+    for (std::size_t c = 1; c < extremes_.size(); ++c) {
+        const Extremes& other = extremes_[c];
+        e = {std::max(e.speed2, other.speed2),
+             std::min(e.lowest, other.lowest),
+             std::max(e.highest, other.highest),
+             e.body_force + other.body_force,
+             e.lost + other.lost};
     }
-    speed_ = std::sqrt(e[0]);
-    pressure_range_ = e[1] + e[2];
+    speed_ = std::sqrt(e.speed2);
+    pressure_range_ = e.highest - e.lowest;
+    body_force_ = e.body_force / static_cast<double>(n);
     const double limit = sound_speed_ > 0 ? 2 * sound_speed_ : speed_;
-    if (e[3] > 0 || !(speed_ <= limit)) {
+    if (e.lost > 0 || !(speed_ <= limit)) {
         std::size_t worst = 0;
         for (std::size_t a = 0; a < n; ++a) {
             const Fields& f = particles.fields[a];
-            if (!(f.u * f.u + f.v * f.v < e[0])) {
+            if (!(f.u * f.u + f.v * f.v < e.speed2)) {
                 worst = a;
                 break;
             }
@@ -402,7 +412,7 @@ void Fluid::Implementation::measure() {
                        + std::to_string(particles.x[worst]) + ", "
                        + std::to_string(particles.y[worst]) + "): speed " + std::to_string(speed_)
                        + " m/s at a sound speed of " + std::to_string(sound_speed_) + " m/s, "
-                       + std::to_string(static_cast<long>(e[3]))
+                       + std::to_string(e.lost)
                        + " particles not finite; refine the spacing, shorten the window, or raise "
                          "the sound speed");
     }
@@ -416,12 +426,7 @@ void Fluid::Implementation::adapt_sound_speed() {
         return;
     }
     const double dx = config.spacing;
-    const double departure =
-        sum([&](std::size_t a) {
-            return norm(hydrostatics_.departure(particles.fields[a].T, particles.compartment[a]));
-        })
-        / static_cast<double>(particles.size());
-    const double head = departure * dx;
+    const double head = body_force_ * dx;
     const double viscous = config.kinematic_viscosity / dx;
     const double wanted = std::max({10 * fastest(),
                                     std::sqrt(10 * pressure_range_ / config.density),

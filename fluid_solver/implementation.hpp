@@ -100,12 +100,20 @@ class Fluid::Implementation {
     double initial_heat_ = 0; ///< J/m at t = 0
     double speed_ = 0;        ///< largest, m/s
     double pressure_range_ = 0;
+    double body_force_ = 0; ///< mean departure from its level, m/s2
     double sound_speed_ = 0;
     Ledger totals_;                   ///< what accumulates: exchanges, closure, wall hits
     std::vector<std::uint32_t> hits_; ///< by chunk
-    std::vector<std::array<double, 4>> extrema_; ///< by chunk: speed^2, -p, p, not finite
-    std::vector<double> compartment_size_;       ///< particles of each
-    std::vector<double> passed_heat_;            ///< by compartment, in one step
+    /// Of the particles of a chunk.
+    struct Extremes {
+        double speed2 = 0, lowest = 1e300, highest = -1e300;
+        double body_force = 0; ///< sum of what the hydrostatic pressure leaves of it, m/s2
+        long lost = 0;         ///< not finite
+    };
+    std::vector<Extremes> extremes_;
+    std::vector<Lanes> means_;             ///< by chunk and compartment: p, T, x, y
+    std::vector<double> compartment_size_; ///< particles of each
+    std::vector<double> passed_heat_;      ///< by compartment, in one step
     std::vector<double> wall_heat_, interface_heat_;
     std::vector<Vec2> interface_position_, interface_velocity_, interface_acceleration_;
     std::vector<double> interface_temperature_;

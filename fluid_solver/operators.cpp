@@ -66,17 +66,32 @@ Mat2 correction(const Moments& m, const Mat2& walls) {
                     walls.yy - static_cast<double>(m.wyy)});
 }
 
-void OperatorBatch::add(const Moments& m,
-                        const Mat2& M,
-                        const Third& third,
-                        const DirichletSums& walls) {
-    const std::size_t i = size_++;
+void OperatorBatch::put_moments(const Moments& m) {
     float values[13];
     static_assert(sizeof values == sizeof m);
     std::memcpy(values, &m, sizeof m);
     for (std::size_t k = 0; k < 13; ++k) {
-        moments_[k][i] = values[k];
+        moments_[k][size_] = values[k];
     }
+}
+
+void OperatorBatch::add(const Moments& m) {
+    if (walled_[size_]) {
+        add(m, {}, {}, {});
+        walled_[size_ - 1] = false;
+    } else {
+        put_moments(m);
+        ++size_;
+    }
+}
+
+void OperatorBatch::add(const Moments& m,
+                        const Mat2& M,
+                        const Third& third,
+                        const DirichletSums& walls) {
+    put_moments(m);
+    walled_[size_] = true;
+    const std::size_t i = size_++;
     const auto put = [&](auto& columns, std::initializer_list<double> wall_values) {
         std::size_t k = 0;
         for (const double value : wall_values) {

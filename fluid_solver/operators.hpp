@@ -56,7 +56,7 @@ class OperatorBatch {
     void clear() { size_ = 0; }
     std::size_t size() const { return size_; }
     /// Away from walls.
-    void add(const Moments& moments) { add(moments, {}, {}, {}); }
+    void add(const Moments& moments);
     /// `M` is what walls add to M; `third` what they add to sum V F x_l x_j x_k, by l.
     void add(const Moments& moments, const Mat2& M, const Third& third, const DirichletSums& walls);
 
@@ -71,7 +71,10 @@ class OperatorBatch {
 
   private:
     using Column = std::array<float, room>;
+    void put_moments(const Moments& moments);
+
     std::size_t size_ = 0;
+    std::array<bool, room> walled_{}; ///< there is something in M_, third_ and K_
     alignas(32) std::array<Column, 13> moments_{};
     alignas(32) std::array<Column, 4> M_{};
     alignas(32) std::array<Column, 6> third_{};

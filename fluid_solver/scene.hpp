@@ -75,7 +75,7 @@ struct Values {
     double temperature = 0; ///< K
     Vec2 velocity;          ///< m/s
     double pressure = 0;    ///< Pa
-    Vec2 temperature_slope; ///< K/m, only told
+    Vec2 temperature_slope{}; ///< K/m, only told
 };
 
 /// What the fluid holds and what has passed since the start.
