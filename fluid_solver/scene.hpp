@@ -72,9 +72,9 @@ struct InterfaceImpulse {
 
 /// The fields at one place.
 struct Values {
-    double temperature = 0; ///< K
-    Vec2 velocity;          ///< m/s
-    double pressure = 0;    ///< Pa
+    double temperature = 0;   ///< K
+    Vec2 velocity;            ///< m/s
+    double pressure = 0;      ///< Pa
     Vec2 temperature_slope{}; ///< K/m, only told
 };
 
