@@ -11,6 +11,8 @@ namespace duet::solid {
 
 namespace {
 
+constexpr double safety = 0.9; // of the stable step: the frequency moves as the body deforms
+
 BodyConfig checked(BodyConfig config) {
     try {
         check_mesh(config.mesh);
@@ -24,6 +26,13 @@ BodyConfig checked(BodyConfig config) {
         throw std::invalid_argument("Body '" + config.name
                                     + "' is deformable but has no Young's modulus; give "
                                       "youngs_modulus, or make its motion fixed.");
+    }
+    if (config.kinematics == Kinematics::updated_lagrangian
+        && config.stepping == Stepping::implicit_steps && config.motion == Motion::deformable) {
+        throw std::invalid_argument("Body '" + config.name
+                                    + "' asks for implicit steps in the updated Lagrangian "
+                                      "description, which has explicit ones alone; make its "
+                                      "kinematics total_lagrangian, or its stepping explicit.");
     }
     return config;
 }
@@ -40,15 +49,20 @@ Body::Body(BodyConfig config)
     if (config_.motion == Motion::deformable) {
         mechanics_.emplace(config_, domains_, heat_.temperature(), heat_.capacity());
     }
-    if (config_.stepping == Stepping::implicit_steps) {
-        if (mechanics_ && mechanics_->driven()) {
-            throw std::invalid_argument("Body '" + config_.name
-                                        + "' has a boundary that moves as prescribed, which takes "
-                                          "explicit steps; give stepping = \"explicit\".");
-        }
+    const bool updated = mechanics_ && config_.kinematics == Kinematics::updated_lagrangian;
+    const bool driven = mechanics_ && mechanics_->driven();
+    if (driven && config_.stepping == Stepping::implicit_steps) {
+        throw std::invalid_argument("Body '" + config_.name
+                                    + "' has a boundary that moves as prescribed, which takes "
+                                      "explicit steps; give stepping = \"explicit\".");
+    }
+    if (config_.stepping != Stepping::explicit_steps && !updated && !driven) {
         implicit_.emplace(heat_, mechanics_ ? &*mechanics_ : nullptr);
     }
     if (mechanics_) {
+        if (config_.start == Start::equilibrium) {
+            equilibrium_ = find_equilibrium();
+        }
         return;
     }
     rest_velocity_.assign(2 * nodes(), 0.0);
@@ -121,12 +135,33 @@ void Body::step(double dt) {
 }
 
 std::uint32_t Body::advance(double length) {
-    const std::uint32_t steps = implicit_ ? advance_implicitly(length) : advance_explicitly(length);
+    if (choice_ == 0) {
+        choice_ = plan(length).implicit ? 2 : 1;
+    }
+    const std::uint32_t steps =
+        choice_ == 2 ? advance_implicitly(length) : advance_explicitly(length);
     if (config_.motion == Motion::prescribed) {
         move_rigidly(length);
     }
     check_finite();
     return steps;
+}
+
+Body::Plan Body::plan(double length) const {
+    // What an implicit step costs in explicit ones: measured, docs/performance.md.
+    const double worth = mechanics_ ? 150 : 30;
+    const double limit = safety * stable_step();
+    const double steps = limit > 0 ? std::max(1.0, std::ceil(length / limit)) : 1;
+    if (config_.stepping != Stepping::automatic || !implicit_) {
+        return {config_.stepping == Stepping::implicit_steps, steps, "as asked for"};
+    }
+    std::ostringstream reason;
+    const double longest = config_.implicit_step > 0 ? config_.implicit_step : length;
+    const double implicit_steps = std::max(1.0, std::ceil(length / longest * (1 - 1e-12)));
+    const bool implicit = steps > worth * implicit_steps;
+    reason << steps << " explicit steps would " << (implicit ? "" : "not ") << "cost more than "
+           << implicit_steps << " implicit, worth " << worth << " each";
+    return {implicit, steps, reason.str()};
 }
 
 std::uint32_t Body::advance_implicitly(double length) {
@@ -154,7 +189,6 @@ std::uint32_t Body::advance_implicitly(double length) {
 }
 
 std::uint32_t Body::advance_explicitly(double length) {
-    constexpr double safety = 0.9; // the bound is an estimate from below of a frequency that moves
     constexpr double steps_between_updates = 256;
     std::uint32_t taken = 0;
     for (double left = length; left > 0;) {
@@ -179,7 +213,9 @@ std::uint32_t Body::advance_explicitly(double length) {
 
 Equilibrium Body::find_equilibrium(double tolerance) {
     try {
-        return solid::find_equilibrium(mechanics_.value(), temperature(), tolerance);
+        return config_.kinematics == Kinematics::total_lagrangian
+                   ? solid::find_equilibrium(mechanics_.value(), temperature(), tolerance)
+                   : relax(mechanics_.value(), temperature(), tolerance);
     } catch (const std::runtime_error& fault) {
         throw std::runtime_error("Body '" + config_.name + "': " + fault.what());
     }

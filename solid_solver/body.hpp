@@ -47,9 +47,19 @@ class Body {
     /// finite, or no implicit step converges.
     std::uint32_t advance(double length);
 
-    /// Puts a deformable body to rest in static equilibrium with its loads at its temperature; see
-    /// find_equilibrium. Throws std::runtime_error naming the body if there is none.
-    Equilibrium find_equilibrium(double tolerance = 1e-9);
+    /// How an advance by `length` would be, or is, made, and why.
+    struct Plan {
+        bool implicit;
+        double explicit_steps; ///< that it would take
+        std::string reason;
+    };
+    Plan plan(double length) const;
+
+    /// Puts a deformable body to rest in static equilibrium with its loads at its temperature:
+    /// find_equilibrium, or, updated Lagrangian, relax. Throws std::runtime_error naming the body
+    /// if there is none.
+    Equilibrium find_equilibrium(double tolerance = 1e-8);
+    const std::optional<Equilibrium>& equilibrium() const { return equilibrium_; } ///< at the start
 
     std::span<const double> temperature() const { return heat_.temperature(); } ///< [N] K
     std::span<const double> position() const;                                   ///< [N][2] m
@@ -74,6 +84,7 @@ class Body {
         visit(rest_position_);
         visit(rest_velocity_);
         visit(work_);
+        visit(choice_);
         visit(steps_since_update_);
     }
 
@@ -95,7 +106,9 @@ class Body {
     std::vector<double> rest_position_, rest_velocity_; ///< of a rigid body
     std::vector<double> rest_force_;                    ///< N/m, of the interface on it
     double work_ = 0;                                   ///< J/m, of the interface on it
-    double time_ = 0;                                   ///< s since the start
+    std::optional<Equilibrium> equilibrium_;
+    double time_ = 0;   ///< s since the start
+    double choice_ = 0; ///< of automatic stepping: 1 explicit, 2 implicit, 0 not made yet
     double steps_since_update_ = 0;
 };
 

@@ -77,4 +77,14 @@ std::vector<Edge> edges_of(const BoundaryCondition& condition,
     return chosen;
 }
 
+double volumetric_capacity(const Material& material, const BodyConfig& body) {
+    const double capacity = material.density * material.heat_capacity;
+    if (body.plane == Plane::strain || body.motion != Motion::deformable
+        || !body.thermoelastic_heating) {
+        return capacity;
+    }
+    const double beta = material.beta(), modulus = material.lambda() + 2 * material.mu();
+    return capacity + body.reference_temperature * beta * beta / modulus;
+}
+
 } // namespace duet::solid

@@ -74,6 +74,21 @@ struct PointLoad {
     VectorField force; ///< N/m
 };
 
+enum class Kinematics {
+    total_lagrangian,  ///< Green-Lagrange strain of the undeformed body
+    updated_lagrangian ///< Jaumann's stress rate on the present body: the paper's
+};
+
+enum class Plane {
+    strain, ///< no strain out of the plane
+    stress  ///< no stress out of the plane; the body is a metre thick when undeformed
+};
+
+enum class Start {
+    as_given,   ///< with the displacement and velocity given
+    equilibrium ///< at rest in static equilibrium with the loads at the start
+};
+
 enum class Stepping {
     explicit_steps, ///< central difference and forward Euler within their stable step
     implicit_steps, ///< TR-BDF2, as long as asked for
@@ -88,17 +103,20 @@ struct BodyConfig {
     Material material;
     std::vector<Material> part_material; ///< of each part of the mesh; empty: `material`
     RigidMotion rigid_motion;            ///< if the motion is prescribed
-    double reference_temperature = 0;    ///< K, free of thermal stress; T0 of (31)
-    Field initial_temperature;           ///< K
-    VectorField initial_displacement;    ///< m
-    VectorField initial_velocity;        ///< m/s
-    double heat_source = 0;              ///< W/m3
-    Point body_force = Point::Zero();    ///< m/s2
-    double stiffness_damping = 0;        ///< s (63)
-    double mass_damping = 0;             ///< 1/s: the force -a M v on the nodes
-    bool thermoelastic_heating = true;   ///< (31)
+    Kinematics kinematics = Kinematics::total_lagrangian;
+    Plane plane = Plane::strain;
+    double reference_temperature = 0;  ///< K, free of thermal stress; T0 of (31)
+    Field initial_temperature;         ///< K
+    VectorField initial_displacement;  ///< m
+    VectorField initial_velocity;      ///< m/s
+    double heat_source = 0;            ///< W/m3
+    Point body_force = Point::Zero();  ///< m/s2
+    double stiffness_damping = 0;      ///< s (63)
+    double mass_damping = 0;           ///< 1/s: the force -a M v on the nodes
+    bool thermoelastic_heating = true; ///< (31)
     Stepping stepping = Stepping::explicit_steps;
     double implicit_step = 0; ///< s, longest implicit step; 0: as long as the advance asked for
+    Start start = Start::as_given;
     std::vector<BoundaryCondition> boundary;
     std::vector<PointLoad> point_load;
     int threads = 1;
@@ -111,6 +129,12 @@ struct BodyConfig {
         return part_material.empty() ? std::vector<Material>{material} : part_material;
     }
 };
+
+/// Heat per volume and degree at constant strain in the plane, J/(m3 K): rho c in plane strain. In
+/// plane stress a body that heats itself also warms its own swelling out of the plane against
+/// S_zz = 0: of T0 beta tr(E) in space, T0 beta E_zz = T0 beta (swelling (T - T0) - thinning
+/// tr(E)), so that T0 beta^2/(lambda + 2 mu) comes to rho c and the rest to the beta of the plane.
+double volumetric_capacity(const Material& material, const BodyConfig& body);
 
 /// The boundary edges on the curve or line of `condition`. Throws std::invalid_argument naming the
 /// body and the condition if there is none.

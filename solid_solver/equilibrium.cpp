@@ -110,4 +110,44 @@ find_equilibrium(Mechanics& mechanics, std::span<const double> temperature, doub
     return Search(mechanics, temperature, tolerance).run();
 }
 
+Equilibrium relax(Mechanics& mechanics, std::span<const double> temperature, double tolerance) {
+    constexpr int most = 1000000;
+    double largest = 0; // of the squared forces at work so far
+    const auto residual = [&] {
+        double left = 0, scale = 0;
+        for (std::size_t c = 0; c < mechanics.inverse_mass().size(); ++c) {
+            const double load = mechanics.load(c), inner = mechanics.internal_force()[c];
+            scale += load * load + inner * inner;
+            left += mechanics.inverse_mass()[c] == 0 ? 0 : (load + inner) * (load + inner);
+        }
+        largest = std::max(largest, scale);
+        return largest > 0 ? std::sqrt(left / largest) : 0;
+    };
+    mechanics.stop();
+    double energy = 0;
+    Equilibrium result;
+    for (result.residual = residual(); result.residual > tolerance; result.residual = residual()) {
+        if (++result.iterations > most || !std::isfinite(result.residual)) {
+            std::ostringstream sentence;
+            sentence << "there is no static equilibrium after " << most
+                     << " steps of relaxation (residual " << result.residual
+                     << "); hold the body against rigid motion, or lower the loads.";
+            throw std::runtime_error(sentence.str());
+        }
+        const double dt = 0.9 * mechanics.stable_step();
+        mechanics.drift(dt);
+        mechanics.respond(dt, temperature);
+        const double now = mechanics.kinetic_energy();
+        if (now < energy) {
+            mechanics.stop();
+        }
+        energy = now < energy ? 0 : now;
+        if (result.iterations % 256 == 0) {
+            mechanics.update_frequency();
+        }
+    }
+    mechanics.stop();
+    return result;
+}
+
 } // namespace duet::solid

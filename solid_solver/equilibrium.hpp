@@ -22,4 +22,9 @@ struct Equilibrium {
 Equilibrium
 find_equilibrium(Mechanics& mechanics, std::span<const double> temperature, double tolerance);
 
+/// The same by dynamic relaxation, for either description: explicit steps from rest, stopped dead
+/// whenever the kinetic energy has passed a maximum (kinetic damping; Cundall 1976). Throws
+/// std::runtime_error with a sentence if that takes more than a million steps.
+Equilibrium relax(Mechanics& mechanics, std::span<const double> temperature, double tolerance);
+
 } // namespace duet::solid

@@ -26,7 +26,7 @@ Heat::Heat(const BodyConfig& body, const Domains& domains)
     : threads_(body.threads), conduction_(domains, conductivities(body)), place_(body.mesh.node) {
     std::vector<double> density;
     for (const Material& material : body.materials()) {
-        density.push_back(material.density * material.heat_capacity);
+        density.push_back(volumetric_capacity(material, body));
     }
     capacity_ = nodal_area(body.mesh, density); // (25)
     const std::vector<double> area = nodal_area(body.mesh);
@@ -231,8 +231,9 @@ double Heat::mean_temperature() const {
 double Heat::bound() const {
     const std::vector<double> none(capacity_.size(), 0.0), minus(capacity_.size(), -1.0);
     Spectrum spectrum(capacity_.size());
-    const auto stiffness = [&](const double* x, double* y) {
-        conduction_.advance(x, none.data(), minus.data(), y, 0, capacity_.size()); // x + K x
+    const auto stiffness = [&](std::span<const double> x, std::span<double> y) {
+        conduction_.advance(
+            x.data(), none.data(), minus.data(), y.data(), 0, capacity_.size()); // x + K x
         for (std::size_t i = 0; i < capacity_.size(); ++i) {
             y[i] -= x[i];
         }

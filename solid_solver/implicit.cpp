@@ -87,7 +87,7 @@ void Implicit::start() {
     if (mechanics_) {
         displacement_ = vector(mechanics_->displacement());
         velocity_ = vector(mechanics_->velocity());
-        latent_ = vector(mechanics_->latent_heat());
+        latent_ = vector(mechanics_->elasticity().latent_heat());
         mechanics_->look_ahead(0.5 * dt_); // loads are taken in the middle of the step
         acceleration_.resize(displacement_.size());
         for (Eigen::Index c = 0; c < acceleration_.size(); ++c) {
@@ -108,7 +108,7 @@ void Implicit::start() {
 }
 
 bool Implicit::solve_stage() {
-    if (!mechanics_ || !mechanics_->heats_itself()) {
+    if (!mechanics_ || !mechanics_->elasticity().heats_itself()) {
         solve_temperature();
     }
     return !mechanics_ || solve_motion();
@@ -156,8 +156,8 @@ bool Implicit::solve_motion() {
 /// zero where held. Returns its size relative to the forces at work.
 double Implicit::imbalance() {
     v_ = (u_ - from_u_) / tau_;
-    if (mechanics_->heats_itself()) {
-        mechanics_->latent_heat(span(u_), span(stage_latent_));
+    if (mechanics_->elasticity().heats_itself()) {
+        mechanics_->elasticity().latent_heat(span(u_), span(stage_latent_));
         solve_temperature();
     }
     warming_ = (t_ - temperature_) / dt_; // for the damping alone
@@ -215,14 +215,15 @@ int Implicit::correct(double reduction) {
 /// image = J x, J = M (1/tau^2 + mass damping/tau) + K with the temperature's answer.
 void Implicit::apply(const Vector& x, Vector& image) {
     image.resize(x.size());
-    mechanics_->apply_tangent(x.data(),
-                              image.data(),
-                              1 + mechanics_->stiffness_damping() / tau_,
-                              [this](std::vector<double>& nodal) {
-                                  warming_ = vector(nodal);
-                                  heat_factor_.solve(warming_);
-                                  std::copy(warming_.begin(), warming_.end(), nodal.begin());
-                              });
+    mechanics_->elasticity().apply_tangent(span(x),
+                                           span(image),
+                                           1 + mechanics_->stiffness_damping() / tau_,
+                                           [this](std::vector<double>& nodal) {
+                                               warming_ = vector(nodal);
+                                               heat_factor_.solve(warming_);
+                                               std::copy(
+                                                   warming_.begin(), warming_.end(), nodal.begin());
+                                           });
     const double inertia = (1 / tau_ + mechanics_->mass_damping()) / tau_;
     for (Eigen::Index c = 0; c < x.size(); ++c) {
         const auto i = static_cast<std::size_t>(c);

@@ -1,24 +1,16 @@
-// Thermo-elastic mechanics of one body: total Lagrangian St Venant-Kirchhoff on smoothing domains,
-// lumped mass, explicit central difference.
+// Motion of one thermo-elastic body: lumped mass, loads, explicit central difference.
 
 #pragma once
 
-#include "solid_solver/body_config.hpp"
+#include "solid_solver/elasticity.hpp"
 #include "solid_solver/loads.hpp"
 #include "solid_solver/spectrum.hpp"
 
 #include <array>
-#include <functional>
 #include <span>
 #include <vector>
 
 namespace duet::solid {
-
-/// A symmetric tensor of plane strain, e.g. a stress: xx, yy, xy, and zz out of the plane.
-struct PlaneTensor {
-    double xx = 0, yy = 0, xy = 0, zz = 0;
-    double von_mises() const;
-};
 
 class Mechanics {
   public:
@@ -38,9 +30,11 @@ class Mechanics {
     /// Half a kick with the forces at t, then positions at t + dt.
     void drift(double dt);
     /// W/m into each node by the compression of this step, -beta T0 tr(E_dot) (31).
-    std::span<const double> heating(double dt);
+    std::span<const double> heating(double dt) { return elasticity_.heating(displacement_, dt); }
     /// Forces at t + dt from the new positions and temperatures, and the other half of the kick.
     void respond(double dt, std::span<const double> temperature);
+
+    void stop(); ///< all velocities to zero
 
     /// (2/w) (sqrt(1 + xi^2) - xi), xi = b w/2, with the largest adiabatic frequency w at the last
     /// estimate.
@@ -57,12 +51,13 @@ class Mechanics {
     std::array<double, 2> interface_impulse() const { return impulse_; } ///< N s/m since the start
     double interface_work() const { return work_; }                      ///< J/m since the start
     double kinetic_energy() const;                                       ///< J/m
-    double strain_energy() const; ///< J/m, without the thermal part of the stress
-
-    /// Cauchy stress in domain k.
-    PlaneTensor domain_stress(std::size_t domain, std::span<const double> temperature) const;
-    /// Area-weighted mean of the domains round each node [N].
-    std::vector<PlaneTensor> nodal_stress(std::span<const double> temperature) const;
+    double strain_energy() const { return elasticity_.strain_energy(); } ///< J/m
+    PlaneTensor domain_stress(std::size_t domain, std::span<const double> temperature) const {
+        return elasticity_.domain_stress(domain, temperature);
+    }
+    std::vector<PlaneTensor> nodal_stress(std::span<const double> temperature) const {
+        return elasticity_.nodal_stress(temperature);
+    }
 
     /// Replaces the state: displacement and velocity [N][2]; held components follow their
     /// conditions.
@@ -76,8 +71,7 @@ class Mechanics {
         visit(position_);
         visit(velocity_);
         visit(internal_);
-        visit(stress_);
-        visit(latent_);
+        elasticity_.visit_state(visit);
         visit(external_);
         visit(time_);
         visit(last_step_);
@@ -96,18 +90,6 @@ class Mechanics {
                   std::span<const double> temperature,
                   std::span<const double> warming);
 
-    /// nodal_I = beta T0 sum_k A_k w_Ik tr(E), J/m: the heat that the nodes have given to the
-    /// stretching of a motion; its fall is the thermo-elastic heating (31). Zero where the body
-    /// does not heat itself.
-    void latent_heat(std::span<const double> displacement, std::span<double> nodal);
-    std::span<const double> latent_heat() const { return latent_; } ///< of the last whole step
-    bool heats_itself() const { return heated_; }
-    /// What a change of temperature by `nodal` [N] J/m of heat is: [N] K, in place.
-    using Warming = std::function<void(std::vector<double>& nodal)>;
-    /// force = K u: the change of f_int by a small displacement u [N][2] at the motion and stress
-    /// of the last forces, `material` times its material part, with the temperature that the
-    /// compression brings about by `warming`.
-    void apply_tangent(const double* u, double* force, double material, const Warming& warming);
     /// Loads that change in time are from now on those of `length` s after the present time.
     void look_ahead(double length);
     /// Prescribed displacements or velocities that are not zero.
@@ -117,55 +99,26 @@ class Mechanics {
     double mass_damping() const { return mass_damping_; } ///< 1/s
     double stiffness_damping() const { return damping_; } ///< s
 
-    /// F - I of a domain: g.ij = du_i/dX_j.
-    struct Gradient {
-        double xx, xy, yx, yy;
-    };
-    /// What the tangent of a domain is made of, at the motion of the last forces.
-    struct Linearised {
-        double area;
-        const std::array<double, Domains::slots>&x, &y;
-        Gradient g;
-        PlaneTensor stress; ///< second Piola-Kirchhoff
-        double lambda, mu;  ///< isothermal
-        double warming;     ///< adiabatic less isothermal lambda, beta^2 T0/(rho c)
-    };
-    Linearised linearised(std::size_t domain) const;
-
-    const Domains& domains() const { return domains_; }
+    const Elasticity& elasticity() const { return elasticity_; }
+    Elasticity& elasticity() { return elasticity_; }
     std::span<const double> inverse_mass() const { return inverse_mass_; } ///< [N][2], 0 where held
     std::span<const double> displacement() const { return displacement_; } ///< [N][2] m
+    /// [N][2] N/m: what holds the held components against loads and stress, zero elsewhere.
+    std::vector<double> reaction() const;
     /// [N][2] N/m: body force, traction and interface.
     double load(std::size_t component) const {
         return external_[component] + interface_[component];
     }
 
   private:
-    /// The constants of one part's material.
-    struct Law {
-        double lambda, mu, beta;
-        double heat_capacity; ///< J/(m3 K)
-    };
-    const Law& law(std::size_t domain) const { return law_[domains_.part[domain]]; }
-
-    Gradient displacement_gradient(std::size_t domain, const double* displacement) const;
-    double domain_temperature(std::size_t domain, std::span<const double> temperature) const;
-    PlaneTensor second_piola(std::size_t domain, const Gradient& g, double temperature) const;
-    void put_force(std::size_t domain, const Gradient& g, double sxx, double syy, double sxy);
-    void gather(const std::vector<double>& contribution, double* nodal, int components) const;
-    void compute_forces(double dt, std::span<const double> temperature);
-    void apply_adiabatic_tangent(const double* u, double* force);
+    Spectrum::Operator adiabatic_tangent();
     void hold_velocities();
     void hold_course(double dt);
     void kick(double half_step);
     void slow_down(double factor);
     void place(); ///< positions from the displacement
 
-    const Domains& domains_;
-    int threads_;
-    std::vector<Law> law_; ///< of each part of the mesh
-    double reference_temperature_, damping_, mass_damping_;
-    bool heated_ = false; ///< thermo-elastic heating is on and not zero
+    double mass_damping_, damping_;
 
     std::vector<double> reference_;    ///< [N][2] m
     std::vector<double> mass_;         ///< [N]
@@ -180,20 +133,14 @@ class Mechanics {
     /// differences of positions.
     std::vector<double> displacement_, position_, velocity_;
     std::vector<double> internal_; ///< [N][2] N/m, -(f_int + f_damp) at the last positions
-    std::vector<double> stress_;   ///< [K][3] second Piola-Kirchhoff, xx, yy, xy
-    std::vector<double> latent_;   ///< [N] J/m, latent_heat at the last call of heating
     std::array<double, 2> impulse_{};
     double work_ = 0;
     double time_ = 0;      ///< s since the start
     double last_step_ = 0; ///< s
     double ahead_ = 0;     ///< s, within an implicit step
     double frequency_ = 0;
+    Elasticity elasticity_;
     Spectrum spectrum_;
-
-    std::vector<double> contribution_; ///< [K][slots][2] work space
-    std::vector<double> heat_share_;   ///< [K][slots]
-    std::vector<double> heating_;      ///< [N]
-    std::vector<double> nodal_change_; ///< [N]
 };
 
 } // namespace duet::solid

@@ -69,12 +69,11 @@ struct Assembly {
 };
 
 void add_third(const Mesh& mesh, const Edge& edge, std::uint32_t triangle, Assembly& assembly) {
-    std::array<double, 3> mean{};
-    for (std::size_t i = 0; i < 3; ++i) {
-        const std::uint32_t node = mesh.triangle[triangle][i];
-        mean[i] = node == edge.a || node == edge.b ? 4.0 / 9 : 1.0 / 9;
+    Triangle corners = mesh.triangle[triangle];
+    while (corners[2] == edge.a || corners[2] == edge.b) { // the edge first
+        std::rotate(corners.begin(), corners.begin() + 1, corners.end());
     }
-    assembly.add(mesh, mesh.triangle[triangle], 1.0 / 3, mean);
+    assembly.add(mesh, corners, 1.0 / 3, {4.0 / 9, 4.0 / 9, 1.0 / 9});
 }
 
 void add_edge_domains(const Mesh& mesh, Domains& domains) {
@@ -134,6 +133,7 @@ void add_gather(std::size_t nodes, Domains& domains) {
 Domains make_domains(const Mesh& mesh, Smoothing smoothing) {
     Domains domains;
     if (smoothing == Smoothing::edge) {
+        domains.share = 1.0 / 3;
         add_edge_domains(mesh, domains);
     } else {
         add_element_domains(mesh, domains);

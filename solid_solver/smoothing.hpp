@@ -17,7 +17,9 @@ enum class Smoothing {
 };
 
 /// K domains, as contiguous arrays. A domain has 3 or 4 nodes; one with 3 repeats its first node
-/// in the last slot with gradient and weight zero, so that loops over domains need no branch.
+/// in the last slot with gradient and weight zero, so that loops over domains need no branch. The
+/// nodes of an inner edge a -> b are a, b, the corner to its left, the corner to its right; those
+/// of a single triangle go round counter-clockwise.
 struct Domains {
     static constexpr std::size_t slots = 4;
 
@@ -26,7 +28,8 @@ struct Domains {
     std::vector<std::array<double, slots>> gradient_x;  ///< [K] 1/m, smoothed dN/dx (15)
     std::vector<std::array<double, slots>> gradient_y;  ///< [K] 1/m, smoothed dN/dy (15)
     std::vector<std::array<double, slots>> weight;      ///< [K] mean of N over the domain
-    std::vector<std::uint32_t> part;                    ///< [K] of the mesh; tells the material
+    double share = 1; ///< of a triangle's area that a domain takes: 1/3 round an edge, or all
+    std::vector<std::uint32_t> part; ///< [K] of the mesh; tells the material
 
     /// The slots that belong to node I are entry[first[I]] .. entry[first[I+1] - 1], each
     /// slots * domain + slot, in ascending order. A node sums its own in this order, so that a sum

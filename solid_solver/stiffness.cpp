@@ -26,7 +26,7 @@ void for_pairs(const std::array<std::uint32_t, slots>& node, const Visit& visit)
 } // namespace
 
 Stiffness::Stiffness(const Mechanics& mechanics) {
-    const Domains& domains = mechanics.domains();
+    const Domains& domains = mechanics.elasticity().domains();
     const std::size_t nodes = domains.first.size() - 1;
     held_.resize(2 * nodes);
     for (std::size_t c = 0; c < held_.size(); ++c) {
@@ -74,29 +74,30 @@ Stiffness::Stiffness(const Mechanics& mechanics) {
 }
 
 void Stiffness::add(const Mechanics& mechanics, std::size_t k, const Parts& parts) {
-    const Mechanics::Linearised l = mechanics.linearised(k);
+    const Elasticity& elasticity = mechanics.elasticity();
+    const Elasticity::Linearised l = elasticity.linearised(k);
+    const auto &gx = l.shape.x, &gy = l.shape.y;
     const double fxx = 1 + l.g.xx, fyy = 1 + l.g.yy, fxy = l.g.xy, fyx = l.g.yx;
     const double cross = parts.material * (l.lambda + parts.adiabatic * l.warming);
     const double shear = parts.material * l.mu, stiff = cross + 2 * shear;
     // Rows of B for each slot: E_xx, E_yy, 2 E_xy by a displacement of the node along x and y.
     std::array<Eigen::Matrix<double, 3, 2>, slots> b, db;
     for (std::size_t s = 0; s < slots; ++s) {
-        const double x = l.x[s], y = l.y[s];
+        const double x = gx[s], y = gy[s];
         b[s] << fxx * x, fyx * x, fxy * y, fyy * y, fxx * y + fxy * x, fyx * y + fyy * x;
         db[s].row(0) = stiff * b[s].row(0) + cross * b[s].row(1);
         db[s].row(1) = cross * b[s].row(0) + stiff * b[s].row(1);
         db[s].row(2) = shear * b[s].row(2);
     }
-    const auto& node = mechanics.domains().node[k];
+    const auto& node = elasticity.domains().node[k];
     double* value = matrix_.valuePtr();
     for_pairs(node, [&](std::size_t pair, std::size_t s, std::size_t t) {
         const std::size_t row = node[s] >= node[t] ? s : t, column = node[s] >= node[t] ? t : s;
-        const double geometric =
-            l.x[row] * (l.stress.xx * l.x[column] + l.stress.xy * l.y[column])
-            + l.y[row] * (l.stress.xy * l.x[column] + l.stress.yy * l.y[column]);
+        const double geometric = gx[row] * (l.stress.xx * gx[column] + l.stress.xy * gy[column])
+                                 + gy[row] * (l.stress.xy * gx[column] + l.stress.yy * gy[column]);
         Eigen::Matrix2d block = b[row].transpose() * db[column];
         block.diagonal().array() += geometric;
-        block *= l.area;
+        block *= l.shape.area;
         for (std::size_t c = 0; c < 2; ++c) {
             for (std::size_t d = s == t ? c : 0; d < 2; ++d) {
                 if (!held_[2 * node[row] + d] && !held_[2 * node[column] + c]) {

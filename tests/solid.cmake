@@ -1,5 +1,5 @@
 duet_test(solid_unit LABEL unit
-    SOURCES unit/solid_mesh.cpp unit/solid_smoothing.cpp unit/solid_heat.cpp unit/solid_equilibrium.cpp unit/solid_loads.cpp unit/solid_implicit.cpp unit/solid_mechanics.cpp
+    SOURCES unit/solid_mesh.cpp unit/solid_smoothing.cpp unit/solid_heat.cpp unit/solid_equilibrium.cpp unit/solid_loads.cpp unit/solid_implicit.cpp unit/solid_plane.cpp unit/solid_updated.cpp unit/solid_mechanics.cpp
         unit/solid_interface.cpp unit/solid_state.cpp
     LIBRARIES duet_solid_core)
 
@@ -11,3 +11,7 @@ duet_test(solid_verification LABEL verification
 duet_test(solid_participant_unit LABEL unit
     SOURCES unit/solid_participant.cpp unit/solid_msh.cpp
     LIBRARIES duet_solid_participant)
+
+duet_test(solid_allocation LABEL unit
+    SOURCES unit/solid_allocation.cpp
+    LIBRARIES duet_solid_core)
