@@ -16,6 +16,8 @@ namespace {
 
 // Rough constants of the estimate, from runs on one core of an ordinary machine.
 constexpr double particle_steps_per_second = 1.3e6; // full particle steps a CPU second
+constexpr double implicit_step_worth = 150;         // explicit steps, docs/performance.md
+constexpr double implicit_heat_step_worth = 30;     // the same of a body without mechanics
 constexpr double node_steps_per_second = 1e8;       // heat steps of a solid's node a CPU second
 constexpr double bytes_per_particle = 1500;
 constexpr double bytes_per_node = 500;
@@ -179,6 +181,36 @@ void describe_fluid(const v1::Scene& scene, const Estimate& e, std::string& out)
     out += "        all other walls: fixed, no-slip, adiabatic\n";
 }
 
+/// Roughly the longest explicit step of a body, s; infinite without a limit, and where a mesh file
+/// tells its sizes to the solid alone.
+double explicit_step(const v1::Body& body, const Estimate& e) {
+    double step = std::numeric_limits<double>::infinity();
+    const double h = body.element_size();
+    if (h == 0)
+        return step;
+    const double alpha = diffusivity(body.conductivity(), body.density(), body.heat_capacity());
+    if (e.heat && alpha > 0)
+        step = 0.25 * h * h / alpha;
+    if (body.motion() == v1::Body::DEFORMABLE) {
+        const double nu = body.poissons_ratio();
+        const double stiffness = body.youngs_modulus() * (1 - nu) / ((1 + nu) * (1 - 2 * nu));
+        step = std::min(step, 0.5 * h / std::sqrt(stiffness / body.density()));
+    }
+    return step;
+}
+
+/// The solid decides with its own stable step; this is what it is likely to say.
+std::string automatic_steps(const v1::Body& body, const Estimate& e) {
+    const double steps = e.window / explicit_step(body, e);
+    const double worth =
+        body.motion() == v1::Body::DEFORMABLE ? implicit_step_worth : implicit_heat_step_worth;
+    if (!(steps > 0))
+        return "explicit or implicit, as the first window shows";
+    return std::string(steps > worth ? "implicit" : "explicit") + " (about "
+           + number(std::ceil(steps))
+           + " explicit ones in a window; an implicit one costs as much as " + number(worth) + ")";
+}
+
 void describe_solid(const v1::Scene& scene, const Estimate& e, std::string& out) {
     for (const v1::Body& body : scene.solid().body()) {
         out += "solid   body '" + body.name() + "': "
@@ -190,6 +222,10 @@ void describe_solid(const v1::Scene& scene, const Estimate& e, std::string& out)
                   : body.motion() == v1::Body::PRESCRIBED ? "left out (rigid, moved as prescribed)"
                                                           : "left out (fixed and rigid)")
                + "; heat: " + (e.heat ? "conduction" : "left out (one temperature everywhere)")
+               + "; steps: "
+               + (body.stepping() == v1::Body::IMPLICIT    ? "implicit"
+                  : body.stepping() == v1::Body::AUTOMATIC ? automatic_steps(body, e)
+                                                           : "explicit")
                + "\n";
     }
 }
@@ -244,19 +280,8 @@ void describe_cost(const v1::Scene& scene,
         double step = scene.time().end();
         for (const v1::Body& body : scene.solid().body()) {
             nodes += nodes_of(body);
-            const double h = body.element_size();
-            if (h == 0)
-                continue; // a mesh file tells its sizes to the solid alone
-            const double alpha =
-                diffusivity(body.conductivity(), body.density(), body.heat_capacity());
-            if (e.heat && alpha > 0)
-                step = std::min(step, 0.25 * h * h / alpha);
-            if (body.motion() == v1::Body::DEFORMABLE) {
-                const double nu = body.poissons_ratio();
-                const double stiffness =
-                    body.youngs_modulus() * (1 - nu) / ((1 + nu) * (1 - 2 * nu));
-                step = std::min(step, 0.5 * h / std::sqrt(stiffness / body.density()));
-            }
+            if (body.stepping() != v1::Body::IMPLICIT)
+                step = std::min(step, explicit_step(body, e));
         }
         if (e.window > 0)
             step = std::min(step, e.window);

@@ -146,18 +146,43 @@ void Participant::fill(v1::Ledger& ledger) const {
     (*ledger.mutable_figure())["thermoelastic_heat"] = thermoelastic;
 }
 
+namespace {
+
+std::string deformable_model(const Body& body) {
+    std::ostringstream text;
+    text << "deformable, "
+         << (body.config().kinematics == Kinematics::updated_lagrangian ? "updated" : "total")
+         << " Lagrangian, plane " << (body.config().plane == Plane::stress ? "stress" : "strain");
+    if (body.equilibrium()) {
+        text << ", starts in equilibrium (residual " << body.equilibrium()->residual << " after "
+             << body.equilibrium()->iterations << " iterations)";
+    }
+    return text.str();
+}
+
+/// Which steps the body takes in a window, and why.
+std::string steps_model(const Body& body, double window) {
+    if (body.config().stepping == Stepping::automatic && !(window > 0)) {
+        return "; explicit or implicit steps, whichever cost less in the first window";
+    }
+    const Body::Plan plan = body.plan(window);
+    return std::string("; ") + (plan.implicit ? "implicit" : "explicit") + " steps, " + plan.reason;
+}
+
+} // namespace
+
 void Participant::describe(v1::Ready& ready) const {
     std::uint64_t unknowns = 0;
     for (const Body& body : solid_->bodies()) {
         std::ostringstream line;
         line << "body " << body.config().name << ": "
-             << (body.deformable() ? "deformable, total Lagrangian"
+             << (body.deformable() ? deformable_model(body)
                  : body.config().motion == Motion::prescribed
                      ? "rigid, moved as prescribed, heat alone"
                      : "fixed, heat alone")
              << ", " << body.nodes() << " nodes, " << body.config().mesh.triangle.size()
              << " triangles, " << body.domains().size() << " smoothing domains, stable step "
-             << body.stable_step() << " s";
+             << body.stable_step() << " s" << steps_model(body, scene_.time().window());
         ready.add_model(line.str());
         unknowns += body.nodes();
     }

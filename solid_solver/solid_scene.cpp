@@ -144,7 +144,17 @@ config_from_scene(const v1::Body& body, unsigned threads, const std::filesystem:
     config.heat_source = body.heat_source();
     config.body_force = to_point(body.body_force());
     config.stiffness_damping = body.stiffness_damping();
+    config.mass_damping = body.mass_damping();
     config.thermoelastic_heating = body.thermoelastic_heating();
+    config.kinematics = body.kinematics() == v1::Body::UPDATED_LAGRANGIAN
+                            ? Kinematics::updated_lagrangian
+                            : Kinematics::total_lagrangian;
+    config.plane = body.plane() == v1::Body::STRESS ? Plane::stress : Plane::strain;
+    config.stepping = body.stepping() == v1::Body::IMPLICIT    ? Stepping::implicit_steps
+                      : body.stepping() == v1::Body::AUTOMATIC ? Stepping::automatic
+                                                               : Stepping::explicit_steps;
+    config.implicit_step = body.implicit_step();
+    config.start = body.start() == v1::Body::EQUILIBRIUM ? Start::equilibrium : Start::as_given;
     for (const v1::Boundary& boundary : body.boundary()) {
         config.boundary.push_back(condition_from_scene(boundary));
     }
