@@ -158,6 +158,7 @@ struct Evaluation::Work {
 /// then the fields of each.
 struct Evaluation::Scratch {
     int column = -1, row = -1; ///< of the surroundings
+    bool beside_walls = false; ///< walls may be in reach from this cell
     Surroundings surroundings;
     Neighbours near;
     std::array<Work, OperatorBatch::room / 2> work;
@@ -196,6 +197,7 @@ bool Evaluation::gather(
     if (column != s.column || row != s.row) {
         s.column = column;
         s.row = row;
+        s.beside_walls = scene.boundary.near(x);
         if (!s.surroundings.collect(particles, scene.grid, column, row)) {
             return false;
         }
@@ -205,7 +207,7 @@ bool Evaluation::gather(
         return false;
     }
     work.contacts.clear();
-    if (scene.boundary.near(x)) {
+    if (s.beside_walls) {
         scene.boundary.contacts(x, work.contacts);
         drop_hidden(work.contacts, s.near);
     }

@@ -56,8 +56,7 @@ double growth(Vec2 place, double courant, int count) {
     return energy() / before;
 }
 
-// Without the softness of such particles the first two grow by factors of 1e30 and more (and rattle
-// on their own in a flow, at two or three times its largest speed), whatever the rest does.
+// Without the softness of such particles all but the one in the corner grow beyond all numbers.
 TEST(FluidPressure, AParticleCloseToAWallDoesNotRattle) {
     EXPECT_LT(growth({0.55, 0.02 * spacing}, 1.65, 100), 1);
     EXPECT_LT(growth({0.55, 0.1 * spacing}, 1.65, 100), 1);
