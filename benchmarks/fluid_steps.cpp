@@ -1,0 +1,59 @@
+// Whole outer steps of a buoyant cavity of n x n particles in a roll: cost of a particle step by
+// phase, and memory for each particle at the peak.
+//
+//     build/release/bin/bench_fluid_steps 1000 100 1       (n, outer steps, threads)
+
+#include "fluid_solver/fluid.hpp"
+
+#include <sys/resource.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <ctime>
+#include <iostream>
+#include <numbers>
+
+int main(int argc, char** argv) {
+    using namespace duet::fluid;
+    if (argc != 4) {
+        std::cerr << "usage: bench_fluid_steps PARTICLES_ALONG_A_SIDE OUTER_STEPS THREADS\n";
+        return 1;
+    }
+    Config config; // lengths in L, time in L^2/alpha, Ra = 1e6
+    config.spacing = 1.0 / std::atoi(argv[1]);
+    config.region = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    config.kinematic_viscosity = 0.71;
+    config.conductivity = 1;
+    config.thermal_expansion = 1;
+    config.gravity = {0, -0.71e6};
+    config.reference_temperature = config.initial_temperature = 0.5;
+    config.disorder = 0.1;
+    config.threads = std::atoi(argv[3]);
+    config.walls = {{"hot", {0, 0}, {0, 1}, 1.0, {}}, {"cold", {1, 0}, {1, 1}, 0.0, {}}};
+    Fluid fluid(config);
+    fluid.set_fields([](Vec2 x) {
+        const double pi = std::numbers::pi, sx = std::sin(pi * x.x), sy = std::sin(pi * x.y);
+        Values values;
+        values.temperature = 1 - x.x;
+        values.velocity =
+            100 * Vec2{sx * sx * std::sin(2 * pi * x.y), -sy * sy * std::sin(2 * pi * x.x)};
+        return values;
+    });
+    const std::clock_t start = std::clock();
+    int steps = 0;
+    while (steps < std::atoi(argv[2])) {
+        steps += fluid.advance(fluid.stable_step());
+    }
+    const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    const auto count = static_cast<double>(fluid.size());
+    std::cout << fluid.size() << " particles, " << steps
+              << " outer steps: " << 1e9 * seconds / (steps * count) << " CPU ns a particle step, "
+              << 1024.0 * static_cast<double>(usage.ru_maxrss) / count
+              << " bytes a particle at the peak\n";
+    for (const Phase& phase : fluid.phases()) {
+        std::cout << "  " << phase.name << ": " << 1e9 * phase.seconds / (steps * count) << " ns\n";
+    }
+    return 0;
+}
