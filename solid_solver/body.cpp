@@ -51,12 +51,18 @@ Body::Body(BodyConfig config)
     }
     const bool updated = mechanics_ && config_.kinematics == Kinematics::updated_lagrangian;
     const bool driven = mechanics_ && mechanics_->driven();
+    const bool corrected = mechanics_ && config_.mass == Mass::corrected;
+    if (corrected && config_.stepping == Stepping::implicit_steps) {
+        throw std::invalid_argument("Body '" + config_.name
+                                    + "' asks for a corrected mass, which only explicit steps "
+                                      "have; leave mass or stepping out.");
+    }
     if (driven && config_.stepping == Stepping::implicit_steps) {
         throw std::invalid_argument("Body '" + config_.name
                                     + "' has a boundary that moves as prescribed, which takes "
                                       "explicit steps; give stepping = \"explicit\".");
     }
-    if (config_.stepping != Stepping::explicit_steps && !updated && !driven) {
+    if (config_.stepping != Stepping::explicit_steps && !updated && !driven && !corrected) {
         implicit_.emplace(heat_, mechanics_ ? &*mechanics_ : nullptr);
     }
     if (mechanics_) {

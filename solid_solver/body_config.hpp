@@ -89,6 +89,11 @@ enum class Start {
     equilibrium ///< at rest in static equilibrium with the loads at the start
 };
 
+enum class Mass {
+    lumped,   ///< the paper's (19)
+    corrected ///< towards the consistent one, for waves; explicit steps alone
+};
+
 enum class Stepping {
     explicit_steps, ///< central difference and forward Euler within their stable step
     implicit_steps, ///< TR-BDF2, as long as asked for
@@ -105,14 +110,15 @@ struct BodyConfig {
     RigidMotion rigid_motion;            ///< if the motion is prescribed
     Kinematics kinematics = Kinematics::total_lagrangian;
     Plane plane = Plane::strain;
-    double reference_temperature = 0;  ///< K, free of thermal stress; T0 of (31)
-    Field initial_temperature;         ///< K
-    VectorField initial_displacement;  ///< m
-    VectorField initial_velocity;      ///< m/s
-    double heat_source = 0;            ///< W/m3
-    Point body_force = Point::Zero();  ///< m/s2
-    double stiffness_damping = 0;      ///< s (63)
-    double mass_damping = 0;           ///< 1/s: the force -a M v on the nodes
+    double reference_temperature = 0; ///< K, free of thermal stress; T0 of (31)
+    Field initial_temperature;        ///< K
+    VectorField initial_displacement; ///< m
+    VectorField initial_velocity;     ///< m/s
+    double heat_source = 0;           ///< W/m3
+    Point body_force = Point::Zero(); ///< m/s2
+    double stiffness_damping = 0;     ///< s (63)
+    double mass_damping = 0;          ///< 1/s: the force -a M v on the nodes
+    Mass mass = Mass::lumped;
     bool thermoelastic_heating = true; ///< (31)
     Stepping stepping = Stepping::explicit_steps;
     double implicit_step = 0; ///< s, longest implicit step; 0: as long as the advance asked for

@@ -10,14 +10,19 @@ Mechanics::Mechanics(const BodyConfig& body,
                      std::span<const double> temperature,
                      std::span<const double> capacity)
     : mass_damping_(body.mass_damping), damping_(body.stiffness_damping),
-      capacity_(capacity.begin(), capacity.end()), elasticity_(body, domains),
-      spectrum_(2 * body.mesh.node.size()) {
+      capacity_(capacity.begin(), capacity.end()), threads_(body.threads),
+      elasticity_(body, domains), spectrum_(2 * body.mesh.node.size()) {
     std::vector<double> density;
     for (const Material& m : body.materials()) {
         density.push_back(m.density);
     }
     mass_ = nodal_area(body.mesh, density); // (19)
     const std::size_t nodes = mass_.size();
+    if (body.mass == Mass::corrected) {
+        correction_.emplace(body.mesh, density);
+        acceleration_.resize(2 * nodes);
+        corrected_.resize(2 * nodes);
+    }
     for (std::size_t i = 0; i < nodes; ++i) {
         for (int d = 0; d < 2; ++d) {
             reference_.push_back(body.mesh.node[i][d]);
@@ -123,6 +128,16 @@ std::vector<double> Mechanics::reaction() const {
 }
 
 void Mechanics::kick(double half_step) {
+    if (correction_) {
+        for (std::size_t c = 0; c < velocity_.size(); ++c) {
+            acceleration_[c] = inverse_mass_[c] * (external_[c] + interface_[c] + internal_[c]);
+        }
+        correction_->apply(acceleration_, inverse_mass_, corrected_, threads_);
+        for (std::size_t c = 0; c < velocity_.size(); ++c) {
+            velocity_[c] += half_step * corrected_[c];
+        }
+        return;
+    }
     for (std::size_t c = 0; c < velocity_.size(); ++c) {
         velocity_[c] +=
             half_step * inverse_mass_[c] * (external_[c] + interface_[c] + internal_[c]);
@@ -217,8 +232,10 @@ double Mechanics::stable_step() const {
     if (frequency_ == 0) {
         return 0;
     }
-    const double xi = 0.5 * damping_ * frequency_;
-    return 2 / frequency_ * (std::sqrt(1 + xi * xi) - xi);
+    const double frequency =
+        correction_ ? std::sqrt(MassCorrection::growth) * frequency_ : frequency_;
+    const double xi = 0.5 * damping_ * frequency;
+    return 2 / frequency * (std::sqrt(1 + xi * xi) - xi);
 }
 
 double Mechanics::kinetic_energy() const {

@@ -4,9 +4,11 @@
 
 #include "solid_solver/elasticity.hpp"
 #include "solid_solver/loads.hpp"
+#include "solid_solver/mass_correction.hpp"
 #include "solid_solver/spectrum.hpp"
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -139,6 +141,9 @@ class Mechanics {
     double last_step_ = 0; ///< s
     double ahead_ = 0;     ///< s, within an implicit step
     double frequency_ = 0;
+    std::optional<MassCorrection> correction_;
+    std::vector<double> acceleration_, corrected_; ///< [N][2] work space of the correction
+    int threads_;
     Elasticity elasticity_;
     Spectrum spectrum_;
 };

@@ -145,6 +145,7 @@ config_from_scene(const v1::Body& body, unsigned threads, const std::filesystem:
     config.body_force = to_point(body.body_force());
     config.stiffness_damping = body.stiffness_damping();
     config.mass_damping = body.mass_damping();
+    config.mass = body.mass() == v1::Body::CORRECTED ? Mass::corrected : Mass::lumped;
     config.thermoelastic_heating = body.thermoelastic_heating();
     config.kinematics = body.kinematics() == v1::Body::UPDATED_LAGRANGIAN
                             ? Kinematics::updated_lagrangian

@@ -4,7 +4,7 @@ duet_test(solid_unit LABEL unit
     LIBRARIES duet_solid_core)
 
 duet_test(solid_verification LABEL verification
-    SOURCES verification/solid_conduction.cpp verification/solid_wave.cpp verification/solid_cantilever.cpp
+    SOURCES verification/solid_conduction.cpp verification/solid_wave.cpp verification/solid_cantilever.cpp verification/solid_dispersion.cpp
         verification/solid_statics.cpp
     LIBRARIES duet_solid_core)
 
