@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace duet::fluid {
 
@@ -106,6 +107,7 @@ void Boundary::build() {
 
 void Boundary::add_chain(const Chain& chain) {
     const auto first = static_cast<std::uint32_t>(segments_.size());
+    const auto first_face = static_cast<std::uint32_t>(faces_.size());
     const auto count = static_cast<std::uint32_t>(chain.segments());
     for (std::uint32_t j = 0; j < count; ++j) {
         const std::uint32_t a = chain.nodes[j];
@@ -123,11 +125,48 @@ void Boundary::add_chain(const Chain& chain) {
     for (std::uint32_t j = 1; j <= count; ++j) {
         if (j == count || std::abs(cross(direction(start), direction(j))) > 1e-9
             || dot(direction(start), direction(j)) < 0) {
-            add_face(first + start, j - start, true);
+            add_face(first + start, j - start, !chain.insulated);
             start = j;
         }
     }
+    find_runs(first_face);
     link_cells(chain, first);
+}
+
+/// Joins the faces from `first` on into runs. A joint continues a run if it turns by less than
+/// 5 degrees and bends the wall by less than 0.35 over the length of a support, so that within a
+/// support the tangent lies close to the wall; no run turns by more than 60 degrees in all, so that
+/// a wall that turns back shows a particle both its branches.
+void Boundary::find_runs(std::uint32_t first) {
+    constexpr double sharpest_joint = 5 * std::numbers::pi / 180;
+    constexpr double sharpest_bend = 0.35;
+    constexpr double longest_turn = std::numbers::pi / 3;
+    const auto count = static_cast<std::uint32_t>(faces_.size());
+    double turned = 0;
+    for (std::uint32_t f = first; f < count; ++f) {
+        Face& face = faces_[f];
+        face.run = f;
+        if (f == first) {
+            continue;
+        }
+        const Face& before = faces_[f - 1];
+        const double turn =
+            std::atan2(cross(before.tangent, face.tangent), dot(before.tangent, face.tangent));
+        const double bend = 2 * std::abs(turn) * support_ / (before.length + face.length);
+        turned += turn;
+        if (face.heated == before.heated && std::abs(turn) < sharpest_joint && bend < sharpest_bend
+            && std::abs(turned) < longest_turn) {
+            face.run = before.run;
+            face.run_before = before.run_before + before.length;
+        } else {
+            turned = 0;
+        }
+    }
+    for (std::uint32_t f = count; f-- > first;) {
+        if (f + 1 < count && faces_[f + 1].run == faces_[f].run) {
+            faces_[f].run_after = faces_[f + 1].run_after + faces_[f + 1].length;
+        }
+    }
 }
 
 void Boundary::add_face(std::uint32_t first, std::uint32_t segments, bool heated) {
@@ -140,6 +179,7 @@ void Boundary::add_face(std::uint32_t first, std::uint32_t segments, bool heated
     face.first = first;
     face.segments = segments;
     face.heated = heated;
+    face.run = static_cast<std::uint32_t>(faces_.size());
     for (std::uint32_t j = first; j < first + segments; ++j) {
         segments_[j].face_start = dot(segments_[j].a - face.a, face.tangent);
         add_cells(j, face);
@@ -311,22 +351,54 @@ void Boundary::set_values(std::span<const Vec2> velocity,
     std::copy(temperature.begin(), temperature.end(), temperature_.begin());
 }
 
+/// The foot point lies on the nearest face of a run. Before a joint that juts out it is the joint,
+/// and the tangent turns with the particle; beyond the ends of the run the end's face goes on.
 void Boundary::contacts(Vec2 x, std::vector<Contact>& contacts) const {
     contacts.clear();
     const std::size_t cell = grid_.index(x);
-    for (std::uint32_t c = candidate_start_[cell]; c < candidate_start_[cell + 1]; ++c) {
-        const Face& face = faces_[candidate_[c]];
-        const Vec2 r = x - face.a;
-        const double distance = -dot(r, face.normal);
-        const double foot = dot(r, face.tangent);
-        const double beyond = std::max({0.0, -foot, foot - face.length});
-        if (distance > 0 && distance * distance + beyond * beyond < support_ * support_) {
-            contacts.push_back({&face, distance, foot});
+    const std::uint32_t end = candidate_start_[cell + 1];
+    for (std::uint32_t c = candidate_start_[cell]; c < end;) {
+        const std::uint32_t run = faces_[candidate_[c]].run;
+        Contact nearest;
+        double least = support_ * support_;
+        for (; c < end && faces_[candidate_[c]].run == run; ++c) {
+            const Face& face = faces_[candidate_[c]];
+            const Vec2 r = x - face.a;
+            const double distance = -dot(r, face.normal);
+            const double foot = dot(r, face.tangent);
+            const double beyond = std::max({0.0, -foot, foot - face.length});
+            const double square = distance * distance + beyond * beyond;
+            if (square < least) {
+                least = square;
+                nearest = {&face, distance, foot, face.normal, face.tangent};
+            }
         }
+        if (nearest.face == nullptr || !(nearest.distance > 0)) {
+            continue;
+        }
+        const Face& face = *nearest.face;
+        const double foot = std::clamp(nearest.foot, 0.0, face.length);
+        if (foot != nearest.foot && nearest.on_wall()) {
+            nearest.foot = foot;
+            nearest.distance = std::sqrt(least);
+            nearest.normal = (1 / nearest.distance) * (face.a + foot * face.tangent - x);
+            nearest.tangent = {nearest.normal.y, -nearest.normal.x};
+        }
+        contacts.push_back(nearest);
     }
 }
 
-WallPoint Boundary::at(const Face& face, double arc) const {
+WallPoint Boundary::at(const Face& start, double arc) const {
+    const Face* on = &start;
+    while (arc < 0 && on->run_before > 0) {
+        --on;
+        arc += on->length;
+    }
+    while (arc > on->length && on->run_after > 0) {
+        arc -= on->length;
+        ++on;
+    }
+    const Face& face = *on;
     // Segments of a face are sorted by where they start; most faces have equal segments, so the
     // proportional guess is right or next to it.
     auto j = static_cast<std::uint32_t>(std::clamp(arc / face.length, 0.0, 1.0)

@@ -28,14 +28,17 @@ struct Segment {
     std::uint32_t cells = 0;
 };
 
-/// A maximal run of segments on one line with one thermal condition.
+/// A maximal run of segments on one line with one thermal condition. Faces that follow one another
+/// with hardly a turn make a *run*: to a particle a bent wall is one wall.
 struct Face {
     Vec2 a, b;    ///< from a to b
     Vec2 tangent; ///< direction of travel
     Vec2 normal;  ///< from the fluid into the wall
     double length = 0;
     std::uint32_t first = 0, segments = 0;
-    bool heated = false; ///< its temperature is known (a wall's or the solid's); adiabatic if not
+    bool heated = false;   ///< its temperature is known (a wall's or the solid's); adiabatic if not
+    std::uint32_t run = 0; ///< the first face of its run
+    double run_before = 0, run_after = 0; ///< arc length of the run before and after this face
 };
 
 /// A piece of a segment, about half a spacing long, on which flux and traction are taken.
@@ -48,12 +51,15 @@ struct WallCell {
     std::uint32_t before = none, after = none; ///< neighbours, unless a corner lies between
 };
 
-/// A face as seen by one particle.
+/// A run of faces as seen by one particle: its tangent at the foot point, as long as the run.
 struct Contact {
-    const Face* face = nullptr;
-    double distance = 0; ///< of the particle from the face's line, positive
-    double foot = 0;     ///< arc length of its foot point along the face
-    bool on_face() const { return foot >= 0 && foot <= face->length; }
+    const Face* face = nullptr; ///< the one that holds the foot point
+    double distance = 0;        ///< of the particle from the tangent, positive
+    double foot = 0;            ///< arc length of its foot point along the face
+    Vec2 normal, tangent;       ///< of the wall there: from the fluid into the wall, and of travel
+    double before() const { return face->run_before + foot; } ///< of the run, from the foot
+    double after() const { return face->run_after + face->length - foot; }
+    bool on_wall() const { return before() >= 0 && after() >= 0; }
 };
 
 /// Values of the wall at a point: lanes u, v, 0, T.
@@ -77,7 +83,7 @@ class Boundary {
                     std::span<const Vec2> acceleration,
                     std::span<const double> temperature);
 
-    /// Faces within the support of x that show it their outer side. `contacts` is overwritten.
+    /// Runs within the support of x that show it their outer side. `contacts` is overwritten.
     void contacts(Vec2 x, std::vector<Contact>& contacts) const;
 
     /// Whether any face may lie within the support of a point in the cell of x.
@@ -86,6 +92,7 @@ class Boundary {
         return candidate_start_[c] != candidate_start_[c + 1];
     }
 
+    /// The wall at an arc length along a face; beyond its ends, along its run.
     WallPoint at(const Face& face, double arc) const;
     std::uint32_t cell_at(const Segment& segment, double along) const;
 
@@ -131,6 +138,7 @@ class Boundary {
     void add_walls();
     void add_side(const Side& side);
     void add_face(std::uint32_t first, std::uint32_t segments, bool heated);
+    void find_runs(std::uint32_t first);
     void add_cells(std::uint32_t segment, const Face& face);
     void link_cells(const Chain& chain, std::uint32_t first);
     void register_faces();

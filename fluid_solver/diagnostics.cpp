@@ -9,6 +9,13 @@
 
 namespace duet::fluid {
 
+double Fluid::Implementation::kinetic_energy() const {
+    return 0.5 * config.density * volume * sum([&](std::size_t a) {
+               const Fields& f = particles.fields[a];
+               return f.u * f.u + f.v * f.v;
+           });
+}
+
 Ledger Fluid::Implementation::ledger() const {
     const double m = config.density * volume, capacity = m * config.heat_capacity;
     const auto count = static_cast<double>(particles.size());
@@ -17,17 +24,25 @@ Ledger Fluid::Implementation::ledger() const {
     l.mass = m * count;
     l.heat = capacity * temperature - initial_heat_;
     l.mean_temperature = temperature / count;
-    l.kinetic_energy = 0.5 * m * sum([&](std::size_t a) {
-                           const Fields& f = particles.fields[a];
-                           return f.u * f.u + f.v * f.v;
-                       });
+    l.kinetic_energy = kinetic_energy();
+    l.mechanical_residual = l.kinetic_energy - initial_kinetic_energy_ - l.work_from_interface
+                            - l.work_from_walls - l.buoyancy_work + l.viscous_loss;
+    const double since = time - mark_.time;
+    if (since > 0) {
+        l.force_on_solids = (1 / since) * (mark_.impulse - l.impulse_from_interface);
+        l.heat_flow_to_solids = (mark_.heat - l.heat_from_interface) / since;
+    }
     l.max_speed = speed_;
     l.sound_speed = sound_speed_;
     l.particles_outside = static_cast<std::uint64_t>(sum([&](std::size_t a) {
         const Vec2 x = particles.position(a);
-        return boundary_.near(x) && !boundary_.contains(x) ? 1.0 : 0.0;
+        return boundary_.near(x) && boundary_.nearest(x).distance < 0 ? 1.0 : 0.0;
     }));
     return l;
+}
+
+void Fluid::Implementation::mark() {
+    mark_ = {time, totals_.heat_from_interface, totals_.impulse_from_interface};
 }
 
 namespace {
@@ -111,18 +126,17 @@ Values Fluid::Implementation::at(Vec2 point) const {
     }
     // Walls contribute what is known of them, at points half a spacing apart.
     for (const Contact& contact : contacts) {
-        const Face& face = *contact.face;
         for (int i = -5; i <= 5; ++i) {
-            const double arc = contact.foot + 0.5 * i * config.spacing;
-            const Vec2 r = face.a + arc * face.tangent - point;
-            if (arc < 0 || arc > face.length || norm(r) >= R) {
+            const double ahead = 0.5 * i * config.spacing;
+            const Vec2 r = contact.distance * contact.normal + ahead * contact.tangent;
+            if (ahead < -contact.before() || ahead > contact.after() || norm(r) >= R) {
                 continue;
             }
             const double w = kernel.value(norm(r));
-            const Lanes wall = boundary_.at(face, arc).value;
+            const Lanes wall = boundary_.at(*contact.face, contact.foot + ahead).value;
             u.add(r, w, wall[0]);
             v.add(r, w, wall[1]);
-            if (face.heated && heat_) {
+            if (contact.face->heated && heat_) {
                 T.add(r, w, wall[3]);
             }
         }

@@ -75,11 +75,11 @@ struct TwoLaplacianWeights {
 
 /// Drops the neighbours that walls hide.
 void drop_hidden(const std::vector<Contact>& contacts, Neighbours& near) {
-    // What is not behind the line of any face is not hidden either; so it is nearly everywhere.
+    // What is not behind the line of any wall is not hidden either; so it is nearly everywhere.
     bool behind = false;
     for (const Contact& contact : contacts) {
-        const auto nx = static_cast<float>(contact.face->normal.x);
-        const auto ny = static_cast<float>(contact.face->normal.y);
+        const auto nx = static_cast<float>(contact.normal.x);
+        const auto ny = static_cast<float>(contact.normal.y);
         const auto distance = static_cast<float>(contact.distance * (1 - 1e-6));
         int beyond = 0;
         for (std::size_t k = 0; k < near.count; ++k) {
@@ -99,8 +99,8 @@ void drop_hidden(const std::vector<Contact>& contacts, Neighbours& near) {
 Vec2 push_off(const std::vector<Contact>& contacts, double spacing) {
     Vec2 push;
     for (const Contact& contact : contacts) {
-        if (contact.on_face()) {
-            push -= wall_push(contact.distance, spacing) * contact.face->normal;
+        if (contact.on_wall()) {
+            push -= wall_push(contact.distance, spacing) * contact.normal;
         }
     }
     return push;
@@ -326,7 +326,7 @@ void Evaluation::take_samples(std::size_t a,
                               const std::vector<Contact>& contacts,
                               std::vector<WallSample>& out) const {
     for (const Contact& contact : contacts) {
-        if (contact.distance < sample_depth_ && contact.on_face()) {
+        if (contact.distance < sample_depth_ && contact.on_wall()) {
             const WallPoint point = boundary.at(*contact.face, contact.foot);
             const std::uint32_t cell = boundary.cell_at(*point.segment, point.along);
             out.push_back({static_cast<std::uint32_t>(a),
@@ -334,7 +334,7 @@ void Evaluation::take_samples(std::size_t a,
                            contact.distance,
                            (point.along - boundary.cells()[cell].centre) * point.segment->length,
                            point.value,
-                           dot(point.acceleration, contact.face->normal)});
+                           dot(point.acceleration, contact.normal)});
         }
     }
 }

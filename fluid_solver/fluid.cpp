@@ -11,10 +11,11 @@ namespace duet::fluid {
 
 namespace {
 
-constexpr double courant_flow = 0.3;       ///< of dx/U, outer step
-constexpr double courant_diffusion = 0.15; ///< of dx^2/max(nu, alpha), outer step
-constexpr double courant_sound = 1.65;     ///< of dx/c, inner step (stable to 2.0)
-constexpr double step_tolerance = 1.05;    ///< over the outer limit rather than twice the steps
+constexpr double courant_flow = 0.3;        ///< of dx/U, outer step
+constexpr double courant_diffusion = 0.15;  ///< of dx^2/max(nu, alpha), outer step
+constexpr double courant_sound = 1.65;      ///< of dx/c, inner step (stable to 2.0)
+constexpr double step_tolerance = 1.05;     ///< over the outer limit rather than twice the steps
+constexpr double follow_acceleration = 0.1; ///< share of a window\'s acceleration taken up at once
 
 enum PhaseIndex { moving, sorting, evaluating, inner_steps, walls_and_closure };
 
@@ -81,6 +82,7 @@ void Fluid::Implementation::start() {
     sound_speed_ = 0; // the old one says nothing of the new fields
     measure();
     adapt_sound_speed();
+    initial_kinetic_energy_ = kinetic_energy();
     initial_heat_ = config.density * config.heat_capacity * volume
                     * sum([&](std::size_t a) { return particles.fields[a].T; });
 }
@@ -129,6 +131,7 @@ int Fluid::Implementation::advance(double window,
         wall.heat_flow = 0;
         wall.force = {};
     }
+    follow_interface(motion);
     int steps = 0;
     for (double elapsed = 0; elapsed < window; ++steps) {
         const double left = window - elapsed;
@@ -177,6 +180,7 @@ void Fluid::Implementation::step(double dt, double elapsed, const Motion& motion
     {
         const Stamp stamp(phase_seconds_[walls_and_closure]);
         book(dt);
+        book_energy(dt);
         correct_fields(dt);
     }
     {
@@ -190,6 +194,21 @@ void Fluid::Implementation::step(double dt, double elapsed, const Motion& motion
     }
 }
 
+/// The acceleration that the pressure's slope at the interface takes follows the windows' own
+/// within ten of them. The fluid answers it with the mass of the layer beside the wall, m_f = rho
+/// dx or less, one window later; taken up at once that runs away on a wall whose own layer m_s is
+/// lighter, a' = -(m_f/m_s) a. Taken up by the share s it is stable for s (1 + m_f/m_s) < 2.
+void Fluid::Implementation::follow_interface(const Motion& motion) {
+    for (std::size_t i = 0; i < boundary_.interface_nodes(); ++i) {
+        const Vec2 now =
+            (1 / motion.window) * (motion.end->velocity[i] - motion.start->velocity[i]);
+        interface_acceleration_[i] += follow_acceleration * (now - interface_acceleration_[i]);
+    }
+}
+
+/// The interface `elapsed` seconds into the window. Each node moves with the constant acceleration
+/// a = (v1 - v0)/window at the mean velocity V = (x1 - x0)/window, so that its way is the integral
+/// of its velocity: x = x0 + V t + a t (t - window)/2, v = V + a (t - window/2).
 void Fluid::Implementation::place_interface(double elapsed, const Motion& motion) {
     const std::size_t nodes = boundary_.interface_nodes();
     if (nodes == 0) {
@@ -197,11 +216,14 @@ void Fluid::Implementation::place_interface(double elapsed, const Motion& motion
     }
     const InterfaceState &from = *motion.start, &to = *motion.end;
     const double w = elapsed / motion.window;
+    const double bend = 0.5 * elapsed * (elapsed - motion.window);
     for (std::size_t i = 0; i < nodes; ++i) {
         // From the start plus a difference, so that a node at rest keeps its place to the bit.
-        interface_position_[i] = from.position[i] + w * (to.position[i] - from.position[i]);
-        interface_velocity_[i] = from.velocity[i] + w * (to.velocity[i] - from.velocity[i]);
-        interface_acceleration_[i] = (1 / motion.window) * (to.velocity[i] - from.velocity[i]);
+        const Vec2 way = to.position[i] - from.position[i];
+        const Vec2 acceleration = (1 / motion.window) * (to.velocity[i] - from.velocity[i]);
+        interface_position_[i] = from.position[i] + w * way + bend * acceleration;
+        interface_velocity_[i] =
+            (1 / motion.window) * way + (elapsed - 0.5 * motion.window) * acceleration;
         interface_temperature_[i] =
             from.temperature[i] + w * (to.temperature[i] - from.temperature[i]);
     }
@@ -309,11 +331,28 @@ void Fluid::Implementation::book(double dt) {
         } else {
             totals_.heat_from_walls += heat;
             if (segment.wall != none) {
+                totals_.work_from_walls -= dot(impulse, boundary_.velocity(segment.node_a));
                 walls[segment.wall].heat_flow += heat;
                 walls[segment.wall].force += impulse;
             }
         }
     }
+}
+
+/// Books the power of the buoyancy and the viscous dissipation 2 mu D:D in this step.
+void Fluid::Implementation::book_energy(double dt) {
+    const double mass = config.density * volume;
+    if (buoyant_) {
+        totals_.buoyancy_work += dt * mass * sum([&](std::size_t a) {
+                                     const Fields& f = particles.fields[a];
+                                     return dot(hydrostatics_.force(f.T), {f.u, f.v});
+                                 });
+    }
+    totals_.viscous_loss += dt * mass * config.kinematic_viscosity * sum([&](std::size_t a) {
+                                const Slope &x = evaluation_.slope_x[a],
+                                            &y = evaluation_.slope_y[a];
+                                return 2 * (x.u * x.u + y.v * y.v) + (y.u + x.v) * (y.u + x.v);
+                            });
 }
 
 /// Advances T, and corrects all fields for the shift: f += dr . grad f.
@@ -469,6 +508,9 @@ double Fluid::particle_volume() const {
 }
 Ledger Fluid::ledger() const {
     return self_->ledger();
+}
+void Fluid::mark() {
+    self_->mark();
 }
 const std::vector<WallReport>& Fluid::walls() const {
     return self_->walls;

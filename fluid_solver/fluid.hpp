@@ -60,6 +60,8 @@ class Fluid {
     double particle_volume() const; ///< m2
 
     Ledger ledger() const;
+    /// Means since the last mark start anew: a single window's force holds the sound of the cavity.
+    void mark();
     const std::vector<WallReport>& walls() const; ///< in the order of Config::walls
     std::vector<Phase> phases() const;
     /// What is modelled, one line each, for the log.

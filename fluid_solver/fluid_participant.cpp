@@ -105,7 +105,7 @@ void Participant::configure(const v1::Configure& configure,
     scene_ = configure.scene();
     std::vector<Chain> core_chains;
     for (const auto& chain : chains) {
-        core_chains.push_back({chain.nodes, chain.closed});
+        core_chains.push_back({chain.nodes, chain.closed, chain.insulated});
     }
     unpack(start, start_);
     reported([&] {
@@ -145,6 +145,7 @@ void Participant::advance(const protocol::Window& window,
     fill(*report.mutable_ledger());
     if (window.sample) {
         take_probes(*report.mutable_sample());
+        fluid_->mark();
         for (const auto& phase : fluid_->phases()) {
             (*report.mutable_timing()->mutable_phase())[phase.name] = phase.seconds;
         }
@@ -185,6 +186,10 @@ void Participant::fill(v1::Ledger& ledger) const {
     figure["closure_shift_abs"] = now.closure_shift_abs;
     figure["particles_outside"] = static_cast<double>(now.particles_outside);
     figure["wall_hits"] = static_cast<double>(now.wall_hits);
+    figure["buoyancy_work"] = now.buoyancy_work;
+    figure["viscous_loss"] = now.viscous_loss;
+    figure["work_from_walls"] = now.work_from_walls;
+    figure["mechanical_residual"] = now.mechanical_residual;
     figure["max_speed"] = now.max_speed;
     figure["sound_speed"] = now.sound_speed;
 }

@@ -48,7 +48,7 @@ void add_values(
 
 /// Known normal slope for the pressure and, on adiabatic faces, the temperature.
 void add_slopes(const Contact& contact, Vec2 acceleration, Vec2 N, WallSums& sums) {
-    const Vec2 n = contact.face->normal;
+    const Vec2 n = contact.normal;
     sums.N_n += outer(N, n);
     sums.N_acceleration += dot(acceleration, n) * N;
     if (!contact.face->heated) {
@@ -59,17 +59,17 @@ void add_slopes(const Contact& contact, Vec2 acceleration, Vec2 N, WallSums& sum
     }
 }
 
-/// The fraction of the way from the particle to the point at r where it crosses the face; above one
+/// The fraction of the way from the particle to the point at r where it crosses the wall; above one
 /// if it does not.
 double crossing(const Contact& contact, Vec2 r) {
-    const double behind = dot(r, contact.face->normal) - contact.distance;
+    const double behind = dot(r, contact.normal) - contact.distance;
     if (behind <= 0) {
         return 2;
     }
     const double fraction = contact.distance / (contact.distance + behind);
-    const double arc = contact.foot + fraction * dot(r, contact.face->tangent);
+    const double ahead = fraction * dot(r, contact.tangent);
     const double slack = 1e-9 * (contact.distance + behind);
-    return arc >= -slack && arc <= contact.face->length + slack ? fraction : 2;
+    return ahead >= -contact.before() - slack && ahead <= contact.after() + slack ? fraction : 2;
 }
 
 } // namespace
@@ -113,21 +113,21 @@ Ghosts::Straight Ghosts::straight(double d1) const {
 }
 
 bool Ghosts::spans(const Contact& contact, const std::vector<Contact>& all) const {
-    // The face must cut right through the support, and no other face may stand before it: one that
-    // looks the other way (the far wall of a channel) does not.
+    // The wall must cut right through the support, and no other may stand before it: one that looks
+    // the other way (the far wall of a channel) does not.
     const double R = kernel_.support();
     const double half_chord = std::sqrt(R * R - contact.distance * contact.distance);
-    if (contact.foot < half_chord || contact.foot + half_chord > contact.face->length) {
+    if (contact.before() < half_chord || contact.after() < half_chord) {
         return false;
     }
     return std::all_of(all.begin(), all.end(), [&](const Contact& other) {
-        return &other == &contact || dot(other.face->normal, contact.face->normal) < -0.999;
+        return &other == &contact || dot(other.normal, contact.normal) < -0.999;
     });
 }
 
 void Ghosts::add_straight(const Boundary& boundary, const Contact& contact, WallSums& sums) const {
     const double d1 = contact.distance;
-    const Vec2 n = contact.face->normal;
+    const Vec2 n = contact.normal;
     const Straight s = straight(d1);
     const double least = std::max(d1, least_distance_);
     const double S = s.C + (s.N - s.C * d1) / least; // with q = 1 + d2/max(d1, 0.25 dx)
@@ -140,14 +140,14 @@ void Ghosts::add_straight(const Boundary& boundary, const Contact& contact, Wall
 
 namespace {
 
-/// Ghosts of one row behind a face, at r = y n + s t: sums of V F s^k over those that belong to the
-/// face, and of V F and V F s times the wall's values where their lines cross it.
+/// Ghosts of one row behind a wall, at r = y n + s t: sums of V F s^k over those that belong to the
+/// wall, and of V F and V F s times the wall's values where their lines cross it.
 struct Row {
     double m0 = 0, m1 = 0, m2 = 0, m3 = 0;
     Lanes value{}, value_s{};
 };
 
-/// Adds what a row gives to the sums of known values, in the face's frame (n, t): q gradW and
+/// Adds what a row gives to the sums of known values, in the contact's frame (n, t): q gradW and
 /// 2 V F q times powers of xi = (d1, g s), g = d1/y.
 struct FrameSums {
     Vec2 S, K_xi;
@@ -175,30 +175,30 @@ struct FrameSums {
 };
 
 /// From the frame (n, t) to (x, y).
-Vec2 turned(Vec2 a, const Face& face) {
-    return a.x * face.normal + a.y * face.tangent;
+Vec2 turned(Vec2 a, const Contact& contact) {
+    return a.x * contact.normal + a.y * contact.tangent;
 }
-Symmetric turned(const Symmetric& a, const Face& face) {
-    const Vec2 n = face.normal, t = face.tangent;
+Symmetric turned(const Symmetric& a, const Contact& contact) {
+    const Vec2 n = contact.normal, t = contact.tangent;
     return {a[0] * n.x * n.x + 2 * a[1] * n.x * t.x + a[2] * t.x * t.x,
             a[0] * n.x * n.y + a[1] * (n.x * t.y + n.y * t.x) + a[2] * t.x * t.y,
             a[0] * n.y * n.y + 2 * a[1] * n.y * t.y + a[2] * t.y * t.y};
 }
 
-void add(DirichletSums& sums, const FrameSums& in_frame, const Face& face) {
-    const Vec2 n = face.normal, t = face.tangent;
-    sums.S += turned(in_frame.S, face);
+void add(DirichletSums& sums, const FrameSums& in_frame, const Contact& contact) {
+    const Vec2 n = contact.normal, t = contact.tangent;
+    sums.S += turned(in_frame.S, contact);
     sums.K += in_frame.K;
-    sums.S_xi += outer(n, turned(Vec2{in_frame.S_xi.xx, in_frame.S_xi.xy}, face));
-    sums.S_xi += outer(t, turned(Vec2{in_frame.S_xi.yx, in_frame.S_xi.yy}, face));
-    const Symmetric along_n = turned(in_frame.S_xi_xi[0], face);
-    const Symmetric along_t = turned(in_frame.S_xi_xi[1], face);
+    sums.S_xi += outer(n, turned(Vec2{in_frame.S_xi.xx, in_frame.S_xi.xy}, contact));
+    sums.S_xi += outer(t, turned(Vec2{in_frame.S_xi.yx, in_frame.S_xi.yy}, contact));
+    const Symmetric along_n = turned(in_frame.S_xi_xi[0], contact);
+    const Symmetric along_t = turned(in_frame.S_xi_xi[1], contact);
     add(sums.S_xi_xi[0], n.x, along_n);
     add(sums.S_xi_xi[0], t.x, along_t);
     add(sums.S_xi_xi[1], n.y, along_n);
     add(sums.S_xi_xi[1], t.y, along_t);
-    sums.K_xi += turned(in_frame.K_xi, face);
-    add(sums.K_xi_xi, 1, turned(in_frame.K_xi_xi, face));
+    sums.K_xi += turned(in_frame.K_xi, contact);
+    add(sums.K_xi_xi, 1, turned(in_frame.K_xi_xi, contact));
 }
 
 /// Most ghosts of a row: 2 (R / (dx/3) + 1).
@@ -209,17 +209,18 @@ using Columns = std::array<double, most_columns>;
 /// face of `own`; on a tie, half.
 void give_away(
     const Contact& own, const Contact& other, double y, const Columns& s, Columns& share) {
-    const Vec2 n = own.face->normal, t = own.face->tangent;
-    const double ny = dot(other.face->normal, n) * y, nt = dot(other.face->normal, t);
-    const double ty = dot(other.face->tangent, n) * y, tt = dot(other.face->tangent, t);
+    const Vec2 n = own.normal, t = own.tangent;
+    const double ny = dot(other.normal, n) * y, nt = dot(other.normal, t);
+    const double ty = dot(other.tangent, n) * y, tt = dot(other.tangent, t);
     const double fraction = own.distance / y, distance = other.distance;
-    const double foot = other.foot, length = other.face->length;
+    const double before = other.before(), after = other.after();
 #pragma omp simd
     for (std::size_t i = 0; i < most_columns; ++i) {
         const double reach = ny + nt * s[i]; // along the other's normal
         const double theirs = distance / reach;
-        const double arc = foot + theirs * (ty + tt * s[i]), slack = 1e-9 * reach;
-        const bool crosses = (reach > distance) & (arc >= -slack) & (arc <= length + slack);
+        const double ahead = theirs * (ty + tt * s[i]), slack = 1e-9 * reach;
+        const bool crosses =
+            (reach > distance) & (ahead >= -before - slack) & (ahead <= after + slack);
         const double kept = theirs < fraction - 1e-9 ? 0 : (theirs < fraction + 1e-9 ? 0.5 : 1);
         share[i] *= crosses ? kept : 1;
     }
@@ -232,15 +233,16 @@ void Ghosts::add_direct(const Boundary& boundary,
                         const Contact& contact,
                         const std::vector<Contact>& all,
                         WallSums& sums) const {
-    const Face& face = *contact.face;
     const double R = kernel_.support(), d1 = contact.distance;
     const double least = std::max(d1, least_distance_);
+    const double before = contact.before(), after = contact.after();
+    const Face& face = *contact.face;
     Columns s, share, VF;
     for (std::size_t i = 0; i < most_columns; ++i) {
         s[i] = (static_cast<double>(i) - most_columns / 2 + 0.5) * lattice_;
     }
     // One segment's values are linear along it.
-    const bool linear = face.segments == 1;
+    const bool linear = face.segments == 1 && face.run_before == 0 && face.run_after == 0;
     const Lanes at_start = boundary.at(face, 0).value;
     const Lanes slope = (1 / face.length) * (boundary.at(face, face.length).value - at_start);
     const Lanes at_foot = at_start + contact.foot * slope;
@@ -251,8 +253,9 @@ void Ghosts::add_direct(const Boundary& boundary,
         const double y = d1 + d2, g = d1 / y, slack = 1e-9 * y;
 #pragma omp simd
         for (std::size_t i = 0; i < most_columns; ++i) {
-            const double square = y * y + s[i] * s[i], arc = contact.foot + g * s[i];
-            const bool mine = (square < R * R) & (arc >= -slack) & (arc <= face.length + slack);
+            const double square = y * y + s[i] * s[i], ahead = g * s[i];
+            const bool mine =
+                (square < R * R) & (ahead >= -before - slack) & (ahead <= after + slack);
             share[i] = mine ? 1 : 0;
             VF[i] = volume_ * kernel_.slope_over_r(std::sqrt(square));
         }
@@ -285,18 +288,18 @@ void Ghosts::add_direct(const Boundary& boundary,
         K_value += 2 * q * row.value;
         const Vec2 gradW{-y * row.m0, -row.m1};
         N += y * gradW;
-        sums.C += turned(gradW, face);
+        sums.C += turned(gradW, contact);
     }
-    add(sums.velocity, in_frame, face);
+    add(sums.velocity, in_frame, contact);
     if (face.heated) {
-        add(sums.temperature, in_frame, face);
+        add(sums.temperature, in_frame, contact);
     } else {
         value_n[3] = value_t[3] = K_value[3] = 0;
     }
-    sums.Sx_value += face.normal.x * value_n + face.tangent.x * value_t;
-    sums.Sy_value += face.normal.y * value_n + face.tangent.y * value_t;
+    sums.Sx_value += contact.normal.x * value_n + contact.tangent.x * value_t;
+    sums.Sy_value += contact.normal.y * value_n + contact.tangent.y * value_t;
     sums.K_value += K_value;
-    add_slopes(contact, boundary.at(face, contact.foot).acceleration, turned(N, face), sums);
+    add_slopes(contact, boundary.at(face, contact.foot).acceleration, turned(N, contact), sums);
 }
 
 void Ghosts::sums(const Boundary& boundary,

@@ -61,10 +61,10 @@ class Ghosts {
   public:
     explicit Ghosts(double spacing);
 
-    /// Adds up over all faces that a particle sees. Zero without contacts.
+    /// Adds up over all walls that a particle sees. Zero without contacts.
     void sums(const Boundary& boundary, const std::vector<Contact>& contacts, WallSums& sums) const;
 
-    /// Whether the line from the particle to the point at x + r is cut by one of the faces it sees.
+    /// Whether the line from the particle to the point at x + r is cut by one of the walls it sees.
     static bool hidden(const std::vector<Contact>& contacts, Vec2 r);
 
     /// Scalar sums behind an endless straight wall at distance d1, components along its normal:

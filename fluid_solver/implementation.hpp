@@ -26,6 +26,7 @@ class Fluid::Implementation {
     int advance(double window, const InterfaceState& start, const InterfaceState& end);
     double stable_step() const;
     Ledger ledger() const;
+    void mark();
     std::vector<std::string> model() const;
     Values at(Vec2 point) const;
     Snapshot snapshot() const;
@@ -57,6 +58,7 @@ class Fluid::Implementation {
 
     // fluid.cpp
     void step(double dt, double elapsed, const Motion& motion);
+    void follow_interface(const Motion& motion);
     void place_interface(double elapsed, const Motion& motion);
     void put_interface();
     void move(double dt, bool with_shift);
@@ -64,6 +66,8 @@ class Fluid::Implementation {
     void evaluate(double dt);
     void accelerate(double dt);
     void book(double dt);
+    void book_energy(double dt);
+    double kinetic_energy() const;
     void correct_fields(double dt);
     void level();
     void measure();
@@ -97,11 +101,18 @@ class Fluid::Implementation {
     Closure closure_;
     Hydrostatics hydrostatics_;
     bool heat_ = false, buoyant_ = false;
-    double initial_heat_ = 0; ///< J/m at t = 0
-    double speed_ = 0;        ///< largest, m/s
+    double initial_heat_ = 0;           ///< J/m at t = 0
+    double initial_kinetic_energy_ = 0; ///< J/m
+    double speed_ = 0;                  ///< largest, m/s
     double pressure_range_ = 0;
     double body_force_ = 0; ///< mean departure from its level, m/s2
     double sound_speed_ = 0;
+    /// Time and what had passed from the interface at the last mark.
+    struct Mark {
+        double time = 0, heat = 0;
+        Vec2 impulse;
+    };
+    Mark mark_;
     Ledger totals_;                   ///< what accumulates: exchanges, closure, wall hits
     std::vector<std::uint32_t> hits_; ///< by chunk
     /// Of the particles of a chunk.

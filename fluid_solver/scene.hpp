@@ -54,6 +54,7 @@ struct Config {
 struct Chain {
     std::vector<std::uint32_t> nodes;
     bool closed = false;
+    bool insulated = false; ///< no heat passes
     std::size_t segments() const { return closed ? nodes.size() : nodes.size() - 1; }
 };
 
@@ -80,22 +81,28 @@ struct Values {
 
 /// What the fluid holds and what has passed since the start.
 struct Ledger {
-    double mass = 0;                     ///< kg/m
-    double heat = 0;                     ///< J/m, thermal energy relative to the start
-    double heat_from_interface = 0;      ///< J/m
-    double heat_from_walls = 0;          ///< J/m
-    Vec2 impulse_from_interface;         ///< N s/m
-    double work_from_interface = 0;      ///< J/m
-    double kinetic_energy = 0;           ///< J/m
-    double exchanged_heat = 0;           ///< J/m, absolute values summed over segments and windows
-    double exchanged_impulse = 0;        ///< N s/m, absolute values summed over nodes and windows
-    double mean_temperature = 0;         ///< K
-    double max_speed = 0;                ///< m/s
-    double sound_speed = 0;              ///< m/s
-    double closure_conduction = 0;       ///< J/m, given back: Laplacian against wall flux, summed
-    double closure_conduction_abs = 0;   ///< J/m, absolute values summed over steps
-    double closure_shift = 0;            ///< J/m, given back: correction after the shift, summed
-    double closure_shift_abs = 0;        ///< J/m, absolute values summed over steps
+    double mass = 0;                   ///< kg/m
+    double heat = 0;                   ///< J/m, thermal energy relative to the start
+    double heat_from_interface = 0;    ///< J/m
+    double heat_from_walls = 0;        ///< J/m
+    Vec2 impulse_from_interface;       ///< N s/m
+    double work_from_interface = 0;    ///< J/m
+    double work_from_walls = 0;        ///< J/m
+    double buoyancy_work = 0;          ///< J/m
+    double viscous_loss = 0;           ///< J/m, 2 mu D:D over fluid and time
+    double kinetic_energy = 0;         ///< J/m
+    double mechanical_residual = 0;    ///< J/m, kinetic energy gained beyond what the four explain
+    Vec2 force_on_solids;              ///< N/m, mean since the last Fluid::mark
+    double heat_flow_to_solids = 0;    ///< W/m, likewise
+    double exchanged_heat = 0;         ///< J/m, absolute values summed over segments and windows
+    double exchanged_impulse = 0;      ///< N s/m, absolute values summed over nodes and windows
+    double mean_temperature = 0;       ///< K
+    double max_speed = 0;              ///< m/s
+    double sound_speed = 0;            ///< m/s
+    double closure_conduction = 0;     ///< J/m, given back: Laplacian against wall flux, summed
+    double closure_conduction_abs = 0; ///< J/m, absolute values summed over steps
+    double closure_shift = 0;          ///< J/m, given back: correction after the shift, summed
+    double closure_shift_abs = 0;      ///< J/m, absolute values summed over steps
     std::uint64_t particles_outside = 0; ///< outside the cavity or inside a solid, now
     std::uint64_t wall_hits = 0;         ///< particles put back from beyond a wall since the start
 };

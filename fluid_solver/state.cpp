@@ -93,8 +93,10 @@ void Fluid::Implementation::transfer(Archive& archive, Self& self) {
     archive(self.pressure_range_);
     archive(self.sound_speed_);
     archive(self.initial_heat_);
+    archive(self.initial_kinetic_energy_);
     archive(self.heat_);
     archive(self.totals_);
+    archive(self.mark_);
     for (auto& wall : self.walls) {
         archive(wall.heat_flow);
         archive(wall.heat);

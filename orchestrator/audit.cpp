@@ -29,11 +29,12 @@ double unexplained_heat(const v1::Ledger& ledger) {
 } // namespace
 
 Audit::Audit(v1::Coupling::Schedule schedule, double tolerance)
-    : in_flight_(schedule != v1::Coupling::FLUID_FIRST), tolerance_(tolerance) {}
+    : in_flight_(schedule != v1::Coupling::FLUID_FIRST),
+      work_behind_(schedule != v1::Coupling::SOLID_FIRST), tolerance_(tolerance) {}
 
 void Audit::start(const v1::Ledger* solid, const v1::Ledger* fluid) {
     if (solid)
-        solid_start_ = *solid;
+        solid_start_ = solid_before_ = *solid;
     if (fluid)
         fluid_start_ = fluid_before_ = *fluid;
 }
@@ -44,11 +45,16 @@ std::optional<std::string> Audit::window(const v1::Ledger* solid, const v1::Ledg
             return std::string("the ledger of the ") + (ledger == solid ? "solid" : "fluid")
                    + " holds a number that is not finite";
     std::optional<std::string> broken;
-    if (solid && fluid)
+    if (solid && fluid) {
         broken = compare(*solid, in_flight_ ? *fluid_before_ : *fluid);
+        if (!broken)
+            broken = compare_work(work_behind_ ? *solid_before_ : *solid, *fluid);
+    }
     follow_heat(solid, fluid);
-    if (solid)
+    if (solid) {
         follow_mass(*solid_start_, *solid);
+        solid_before_ = *solid;
+    }
     if (fluid) {
         follow_mass(*fluid_start_, *fluid);
         fluid_before_ = *fluid;
@@ -65,9 +71,9 @@ std::optional<std::string> Audit::compare(const v1::Ledger& solid, const v1::Led
                                     imbalance(solid.impulse_y(), fluid.impulse_y(), impulse_scale));
     found_.heat = std::max(found_.heat, heat);
     found_.impulse = std::max(found_.impulse, impulse);
-    // Motion that is only guessed, and frozen loads, part the two works by the order of a window:
-    // reported, not judged.
-    found_.work = imbalance(
+    // Predicted motion and frozen loads part what the two sides themselves saw, by the order of a
+    // window: reported, not judged.
+    found_.work_difference = imbalance(
         solid.work(), fluid.work(), std::max(std::abs(solid.work()), std::abs(fluid.work())));
 
     const auto sentence = [&](const std::string& what, double a, double b, double found) {
@@ -86,6 +92,20 @@ std::optional<std::string> Audit::compare(const v1::Ledger& solid, const v1::Led
                         std::hypot(fluid.impulse_x(), fluid.impulse_y()),
                         impulse);
     return std::nullopt;
+}
+
+/// The work of a load is what the solid booked for it, in the motion that came back to the fluid.
+/// Positions are rounded on the way, and a solid may book from its velocities: more than that
+/// rounding is a load or a motion that was not the one sent.
+std::optional<std::string> Audit::compare_work(const v1::Ledger& solid, const v1::Ledger& fluid) {
+    constexpr double rounding = 1e-9;
+    const double work = imbalance(solid.work(), -fluid.work_of_loads(), fluid.exchanged_work());
+    found_.work = std::max(found_.work, work);
+    if (work <= std::max(tolerance_, rounding))
+        return std::nullopt;
+    return "work through the interface does not balance: the solid booked "
+           + number_text(solid.work()) + " J/m, the loads sent did "
+           + number_text(fluid.work_of_loads()) + " J/m in the motion received";
 }
 
 void Audit::follow_heat(const v1::Ledger* solid, const v1::Ledger* fluid) {

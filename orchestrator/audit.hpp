@@ -15,6 +15,7 @@ struct Balances {
     double heat = 0;
     double impulse = 0;
     double work = 0;
+    double work_difference = 0;
     double total_heat_drift = 0;
     double mass_drift = 0;
 };
@@ -34,12 +35,15 @@ class Audit {
 
   private:
     std::optional<std::string> compare(const v1::Ledger& solid, const v1::Ledger& fluid);
+    std::optional<std::string> compare_work(const v1::Ledger& solid, const v1::Ledger& fluid);
     void follow_heat(const v1::Ledger* solid, const v1::Ledger* fluid);
     void follow_mass(const v1::Ledger& start, const v1::Ledger& now);
 
-    bool in_flight_; // the solid books a window's load in the next window
+    bool in_flight_;   // the solid books a window's load in the next window
+    bool work_behind_; // the fluid knows the motion of a window only in the next one
     double tolerance_;
     std::optional<v1::Ledger> solid_start_;
+    std::optional<v1::Ledger> solid_before_; // after the window before
     std::optional<v1::Ledger> fluid_start_;
     std::optional<v1::Ledger> fluid_before_; // after the window before
     double heat_residual_ = 0;               // J/m, largest

@@ -6,7 +6,12 @@ const std::vector<Figure>& audit_figures() {
     static const std::vector<Figure> figures = {
         {"heat_balance", "largest sum of the heat both sides received, relative to all exchanged"},
         {"impulse_balance", "largest sum of the impulses on both sides, relative to all exchanged"},
-        {"work_balance", "sum of the works on both sides at the end, relative to the larger"},
+        {"work_balance",
+         "largest difference between the work the solid received and what the fluid's loads did in "
+         "the motion it was told, relative to all exchanged"},
+        {"work_difference",
+         "sum of the works that each side saw, at the end, relative to the larger: what predicted "
+         "motion and loads frozen in a window make"},
         {"total_heat_drift",
          "largest heat gained or lost beyond what was let in, relative to all exchanged"},
         {"mass_drift", "largest relative change of a solver's mass"},

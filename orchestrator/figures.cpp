@@ -20,6 +20,7 @@ std::map<std::string, double> figures_of(const RunResult& result) {
         {"heat_balance", result.balances.heat},
         {"impulse_balance", result.balances.impulse},
         {"work_balance", result.balances.work},
+        {"work_difference", result.balances.work_difference},
         {"total_heat_drift", result.balances.total_heat_drift},
         {"mass_drift", result.balances.mass_drift},
         {"wall_seconds", result.wall_seconds},

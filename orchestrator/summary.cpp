@@ -86,6 +86,7 @@ Json balances_json(const Balances& balances) {
     return {{"heat", balances.heat},
             {"impulse", balances.impulse},
             {"work", balances.work},
+            {"work_difference", balances.work_difference},
             {"total_heat_drift", balances.total_heat_drift},
             {"mass_drift", balances.mass_drift}};
 }

@@ -159,14 +159,14 @@ Pairs Judge::mean_until(const v1::Check& check, const v1::Probe& probe, double t
     return sum;
 }
 
-/// A history as a whole: at the times named, or else wherever it was recorded after the start and
-/// the reference reaches.
+/// A history as a whole: at the times named, or else wherever it was recorded after the start, from
+/// the time on that the check names.
 Pairs Judge::over_times(const v1::Check& check, const v1::Probe& probe) const {
     std::vector<double> times(check.at().begin(), check.at().end());
     if (const auto found = result_.histories.find(probe.name());
         times.empty() && found != result_.histories.end())
         for (const double t : found->second.time)
-            if (t > 0)
+            if (t > 0 && t >= check.from())
                 times.push_back(t);
     Pairs pairs;
     for (const double t : times) {

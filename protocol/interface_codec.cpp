@@ -210,6 +210,7 @@ InterfaceSize encode_start(const Stamp& stamp,
         v1::Chain& to = *out.add_chain();
         to.mutable_node()->Assign(chain.nodes.begin(), chain.nodes.end());
         to.set_closed(chain.closed);
+        to.set_insulated(chain.insulated);
     }
     return size;
 }
@@ -224,7 +225,8 @@ InterfaceSize decode_start(const v1::ToPeer& message,
     take_motion(subject, in.temperature().size() / sizeof(double), in, start);
     chains.clear();
     for (const v1::Chain& chain : in.chain())
-        chains.push_back({{chain.node().begin(), chain.node().end()}, chain.closed()});
+        chains.push_back(
+            {{chain.node().begin(), chain.node().end()}, chain.closed(), chain.insulated()});
     return check_chains(subject, chains, start.nodes());
 }
 

@@ -92,6 +92,9 @@ field_sample(const v1::Probe& probe, double time, std::span<const double> values
         sample.add_value(width > 0 ? integral / width : kept.front());
         break;
     }
+    case v1::Probe::DIFFERENCE:
+        sample.add_value(kept.back() - kept.front());
+        break;
     default:
         sample.mutable_value()->Add(kept.begin(), kept.end());
         sample.mutable_position()->Add(position.begin(), position.end());

@@ -1,5 +1,6 @@
 #include "protocol/side.hpp"
 
+#include <cmath>
 #include <utility>
 
 namespace duet::protocol {
@@ -11,12 +12,24 @@ Stamp checkpoint_stamp(const v1::Checkpoint& checkpoint, double time, double len
     return {0, false, {checkpoint.window(), time, length}};
 }
 
-/// position + length * velocity; velocity and temperature as they are.
-void extrapolate(const InterfaceMotion& start, const Window& window, InterfaceMotion& end) {
+/// The end of the window from its start and the state one window `before`: acceleration and rate of
+/// the temperature go on as they were, a = (v1 - v0)/span, x = x1 + w v1 + w^2/2 a, v = v1 + w a.
+/// Before the first window there is none, and both are zero.
+void predict(const InterfaceMotion& before,
+             const InterfaceMotion& start,
+             const Window& window,
+             InterfaceMotion& end) {
+    const double span = start.time - before.time;
+    const double w = window.length, per_span = span > 0 ? 1 / span : 0;
     end = start; // same sizes: no allocation after the first window
-    end.time = window.time + window.length;
-    for (std::size_t i = 0; i < end.position.size(); ++i)
-        end.position[i] += window.length * start.velocity[i];
+    end.time = window.time + w;
+    for (std::size_t i = 0; i < end.position.size(); ++i) {
+        const double acceleration = per_span * (start.velocity[i] - before.velocity[i]);
+        end.position[i] += w * start.velocity[i] + 0.5 * w * w * acceleration;
+        end.velocity[i] += w * acceleration;
+    }
+    for (std::size_t i = 0; i < end.temperature.size(); ++i)
+        end.temperature[i] += w * per_span * (start.temperature[i] - before.temperature[i]);
 }
 
 } // namespace
@@ -84,6 +97,9 @@ void FluidSide::configure(const v1::Configure& configure, Exchange* exchange, v1
         exchange->receive_start(chains, latest_);
         size_ = exchange->size();
     }
+    previous_ = latest_;
+    load_.force.assign(2 * size_.nodes, 0);
+    load_.heat_flow.assign(size_.segments, 0);
     end_is_known_ = end_is_known(configure.schedule());
     fluid_.configure(configure, chains, latest_, ready);
     ready.set_nodes(size_.nodes);
@@ -93,6 +109,18 @@ void FluidSide::configure(const v1::Configure& configure, Exchange* exchange, v1
 void FluidSide::receive(const Window& window, Exchange& exchange) {
     std::swap(previous_, latest_);
     exchange.receive(window, latest_);
+    book_work(window);
+}
+
+/// The motion that has just come was made under the load that was sent last, spread over the window
+/// as the solid spreads it (SolidSide::over).
+void FluidSide::book_work(const Window& window) {
+    const double ratio = load_.length / window.length;
+    for (std::size_t i = 0; i < load_.force.size(); ++i) {
+        const double work = ratio * load_.force[i] * (latest_.position[i] - previous_.position[i]);
+        work_of_loads_ += work;
+        exchanged_work_ += std::abs(work);
+    }
 }
 
 void FluidSide::advance(const Window& window, v1::Report& report) {
@@ -100,10 +128,12 @@ void FluidSide::advance(const Window& window, v1::Report& report) {
     load_.length = window.length;
     if (end_is_known_) {
         fluid_.advance(window, previous_, latest_, load_, report);
-        return;
+    } else {
+        predict(previous_, latest_, window, guess_);
+        fluid_.advance(window, latest_, guess_, load_, report);
     }
-    extrapolate(latest_, window, guess_);
-    fluid_.advance(window, latest_, guess_, load_, report);
+    report.mutable_ledger()->set_work_of_loads(work_of_loads_);
+    report.mutable_ledger()->set_exchanged_work(exchanged_work_);
 }
 
 void FluidSide::send(const Window& window, Exchange& exchange) {
@@ -114,12 +144,26 @@ void FluidSide::store(v1::Checkpoint& checkpoint) const {
     v1::ToPeer message;
     encode(checkpoint_stamp(checkpoint, latest_.time, 0), size_, latest_, message);
     checkpoint.mutable_motion()->Swap(message.mutable_motion());
+    encode(checkpoint_stamp(checkpoint, previous_.time, 0), size_, previous_, message);
+    checkpoint.mutable_motion_before()->Swap(message.mutable_motion());
+    encode(checkpoint_stamp(checkpoint, load_.time, load_.length), size_, load_, message);
+    checkpoint.mutable_load()->Swap(message.mutable_load());
+    checkpoint.set_work_of_loads(work_of_loads_);
+    checkpoint.set_exchanged_work(exchanged_work_);
 }
 
 void FluidSide::restore(const v1::Checkpoint& checkpoint) {
     v1::ToPeer message;
     *message.mutable_motion() = checkpoint.motion();
     decode(message, checkpoint_stamp(checkpoint, checkpoint.motion().time(), 0), size_, latest_);
+    const double before = checkpoint.motion_before().time();
+    *message.mutable_motion() = checkpoint.motion_before();
+    decode(message, checkpoint_stamp(checkpoint, before, 0), size_, previous_);
+    const v1::InterfaceLoad& load = checkpoint.load();
+    *message.mutable_load() = load;
+    decode(message, checkpoint_stamp(checkpoint, load.time(), load.length()), size_, load_);
+    work_of_loads_ = checkpoint.work_of_loads();
+    exchanged_work_ = checkpoint.exchanged_work();
 }
 
 } // namespace duet::protocol

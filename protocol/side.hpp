@@ -64,13 +64,16 @@ class FluidSide final : public Side {
     void restore(const v1::Checkpoint& checkpoint) override;
 
   private:
+    void book_work(const Window& window);
+
     FluidSolver& fluid_;
     InterfaceSize size_;
     bool end_is_known_ = false;
     InterfaceMotion previous_;
     InterfaceMotion latest_;
     InterfaceMotion guess_;
-    InterfaceLoad load_;
+    InterfaceLoad load_;                            // the last one; zero before the first
+    double work_of_loads_ = 0, exchanged_work_ = 0; // J/m
 };
 
 } // namespace duet::protocol

@@ -32,6 +32,7 @@ class Error : public std::runtime_error {
 struct Chain {
     std::vector<std::uint32_t> nodes;
     bool closed = false;
+    bool insulated = false; ///< no heat passes: the heat flow there is zero
     std::size_t segments() const { return closed ? nodes.size() : nodes.size() - 1; }
 };
 
@@ -111,8 +112,8 @@ class FluidSolver : public Solver {
 
     /// Advance over one window while the interface moves from `start` (the state at the window's
     /// start) to `end`. With the solid first, `end` is the solid's state at the window's end; with
-    /// the fluid first or both at once it is the solver's own guess made by the library: position +
-    /// length * velocity, the same velocity and temperature.
+    /// the fluid first or both at once it is predicted by the library: acceleration and rate of the
+    /// temperature go on as in the window before (zero in the first).
     virtual void advance(const Window& window,
                          const InterfaceMotion& start,
                          const InterfaceMotion& end,

@@ -23,10 +23,12 @@ Solid::Solid(std::vector<BodyConfig> bodies, const std::vector<Point>& region) {
 std::uint32_t
 Solid::advance(double length, std::span<const double> force, std::span<const double> heat_flow) {
     set_loads(force, heat_flow);
+    interface_state(position_before_, velocity_, temperature_);
     std::uint32_t steps = 0;
     for (Body& body : bodies_) {
         steps = std::max(steps, body.advance(length));
     }
+    interface_state(position_, velocity_, temperature_);
     book(length, force, heat_flow);
     return steps;
 }
@@ -62,6 +64,9 @@ void Solid::book(double length, std::span<const double> force, std::span<const d
         fx += force[2 * i];
         fy += force[2 * i + 1];
         absolute_force += std::hypot(force[2 * i], force[2 * i + 1]);
+    }
+    for (std::size_t c = 0; c < force.size(); ++c) {
+        account_.work += force[c] * (position_[c] - position_before_[c]);
     }
     account_.heat += heat * length;
     account_.exchanged_heat += absolute_heat * length;

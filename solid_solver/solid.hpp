@@ -18,6 +18,7 @@ struct InterfaceAccount {
     double impulse_x = 0;      ///< N s/m, on the solid, held or not
     double impulse_y = 0;
     double exchanged_impulse = 0; ///< N s/m, sum of absolute values over nodes and windows
+    double work = 0;              ///< J/m, sum of force times the way of its node in the window
 };
 
 class Solid {
@@ -64,6 +65,7 @@ class Solid {
         visit(account_.impulse_x);
         visit(account_.impulse_y);
         visit(account_.exchanged_impulse);
+        visit(account_.work);
     }
 
   private:
@@ -76,6 +78,8 @@ class Solid {
     Interface interface_;
     std::vector<std::vector<double>> nodal_heat_, nodal_force_; ///< of each body
     InterfaceAccount account_;
+    /// Of the interface, at the start of a window and at its end; work space.
+    std::vector<double> position_before_, position_, velocity_, temperature_;
 };
 
 } // namespace duet::solid

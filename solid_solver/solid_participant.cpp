@@ -52,7 +52,8 @@ void Participant::configure(const v1::Configure& configure,
     write_snapshot();
 
     for (const Interface::Chain& chain : solid_->interface().chain) {
-        chains.push_back({chain.node, chain.closed});
+        const auto body = static_cast<int>(solid_->interface().node[chain.node[0]].body);
+        chains.push_back({chain.node, chain.closed, scene_.solid().body(body).insulated()});
     }
     fill(start);
     ready.set_stable_step(longest_window());
@@ -116,7 +117,7 @@ void Participant::fill(protocol::InterfaceMotion& motion) const {
 
 void Participant::fill(v1::Ledger& ledger) const {
     double mass = 0, heat = 0, walls = 0, sources = 0, thermoelastic = 0;
-    double work = 0, kinetic = 0, strain = 0;
+    double kinetic = 0, strain = 0;
     for (const Body& body : solid_->bodies()) {
         const HeatAccount& account = body.heat().account();
         mass += body.mass();
@@ -138,7 +139,7 @@ void Participant::fill(v1::Ledger& ledger) const {
     ledger.set_heat_from_sources(sources);
     ledger.set_impulse_x(passed.impulse_x);
     ledger.set_impulse_y(passed.impulse_y);
-    ledger.set_work(work);
+    ledger.set_work(passed.work);
     ledger.set_kinetic_energy(kinetic);
     ledger.set_strain_energy(strain);
     ledger.set_exchanged_heat(passed.exchanged_heat);

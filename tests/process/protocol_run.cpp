@@ -127,7 +127,8 @@ TEST(Tcp, CarriesARunAndTheNewsOfADeath) {
     EXPECT_EQ(event.message.failed().code(), v1::Failed::PEER) << event.text;
 }
 
-/// A solid whose first node jumps to x = (windows done)^2, although its velocity is 1.
+/// A solid whose first node jumps to x = (windows done)^2, although its velocity is (windows done);
+/// its temperature is 7 more than that.
 class JumpingSolid final : public protocol::SolidSolver {
   public:
     std::string name() const override { return "jumping solid"; }
@@ -152,8 +153,8 @@ class JumpingSolid final : public protocol::SolidSolver {
     static void place(double windows_done, protocol::InterfaceMotion& motion) {
         motion.position.assign(6, 0);
         motion.position[0] = windows_done * windows_done;
-        motion.velocity.assign(6, 1);
-        motion.temperature = {7, 8, 9};
+        motion.velocity.assign(6, windows_done);
+        motion.temperature = {7 + windows_done, 8, 9};
     }
 };
 
@@ -161,7 +162,7 @@ class JumpingSolid final : public protocol::SolidSolver {
 class WatchingFluid final : public protocol::FluidSolver {
   public:
     std::vector<std::array<double, 2>> start_x_and_end_x;
-    std::vector<double> end_time;
+    std::vector<double> end_time, end_velocity, end_temperature;
     std::string name() const override { return "watching fluid"; }
     void configure(const v1::Configure&,
                    const std::vector<protocol::Chain>&,
@@ -174,7 +175,8 @@ class WatchingFluid final : public protocol::FluidSolver {
                  v1::Report&) override {
         start_x_and_end_x.push_back({start.position[0], end.position[0]});
         end_time.push_back(end.time);
-        EXPECT_EQ(end.temperature, start.temperature);
+        end_velocity.push_back(end.velocity[0]);
+        end_temperature.push_back(end.temperature[0]);
         load.force.assign(6, 0);
         load.heat_flow.assign(3, 0);
     }
@@ -183,7 +185,7 @@ class WatchingFluid final : public protocol::FluidSolver {
     void finish() override {}
 };
 
-TEST(FluidSide, KnowsOrGuessesTheEndOfTheWindow) {
+TEST(FluidSide, KnowsOrPredictsTheEndOfTheWindow) {
     for (const auto schedule : {fluid_first, solid_first, parallel}) {
         JumpingSolid jumping;
         WatchingFluid watching;
@@ -200,7 +202,13 @@ TEST(FluidSide, KnowsOrGuessesTheEndOfTheWindow) {
             const double after = std::pow(static_cast<double>(k) + 1, 2);
             const auto& [start_x, end_x] = watching.start_x_and_end_x[k];
             EXPECT_EQ(start_x, before);
-            EXPECT_DOUBLE_EQ(end_x, schedule == solid_first ? after : before + stage.length);
+            // Predicted: from the second window on the velocity grows by 1 in every window.
+            const double n = static_cast<double>(k), grown = k > 0 ? 1 : 0;
+            const double predicted = before + stage.length * (n + 0.5 * grown);
+            const bool known = schedule == solid_first;
+            EXPECT_DOUBLE_EQ(end_x, known ? after : predicted);
+            EXPECT_DOUBLE_EQ(watching.end_velocity[k], known ? n + 1 : n + grown);
+            EXPECT_DOUBLE_EQ(watching.end_temperature[k], known ? n + 8 : n + 7 + grown);
             EXPECT_DOUBLE_EQ(watching.end_time[k], static_cast<double>(k + 1) * stage.length);
         }
     }

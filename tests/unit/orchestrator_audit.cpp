@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 namespace duet::orchestrator {
@@ -68,6 +69,42 @@ TEST(Audit, WithTheSolidFirstTheLastLoadIsUnderWay) {
         }
         EXPECT_EQ(audit.balances().heat, 0);
         EXPECT_EQ(audit.balances().total_heat_drift, 0) << "what is under way is not lost";
+    }
+}
+
+/// Books that say nothing but work: the solid's own, and on the fluid's side what its loads did.
+v1::Ledger work_of_solid(double work) {
+    v1::Ledger ledger;
+    ledger.set_work(work);
+    return ledger;
+}
+v1::Ledger work_of_loads(double work) {
+    v1::Ledger ledger;
+    ledger.set_work(-1.1 * work); // in the motion that it predicted
+    ledger.set_work_of_loads(work);
+    ledger.set_exchanged_work(std::abs(work));
+    return ledger;
+}
+
+TEST(Audit, TheFluidLearnsTheWorkOfItsLoadsFromTheMotion) {
+    for (const auto schedule :
+         {v1::Coupling::FLUID_FIRST, v1::Coupling::SOLID_FIRST, v1::Coupling::PARALLEL}) {
+        Audit audit(schedule, 1e-12);
+        const v1::Ledger start;
+        audit.start(&start, &start);
+        const int behind = schedule == v1::Coupling::SOLID_FIRST ? 0 : 1;
+        for (int k = 1; k < 5; ++k) {
+            const v1::Ledger solid = work_of_solid(2.0 * k),
+                             fluid = work_of_loads(2.0 * (k - behind));
+            EXPECT_EQ(audit.window(&solid, &fluid), std::nullopt) << k;
+        }
+        EXPECT_EQ(audit.balances().work, 0);
+        EXPECT_GT(audit.balances().work_difference, 0.05);
+        const v1::Ledger solid = work_of_solid(10), fluid = work_of_loads(10 * (1 + 1e-6));
+        audit.window(&solid, &fluid);
+        const auto sentence = audit.window(&solid, &fluid);
+        ASSERT_TRUE(sentence);
+        EXPECT_NE(sentence->find("work"), std::string::npos);
     }
 }
 

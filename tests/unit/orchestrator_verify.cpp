@@ -96,6 +96,11 @@ TEST_F(Verify, OverTime) {
     EXPECT_EQ(only().quantity, "scalar over time");
 }
 
+TEST_F(Verify, OverTimeFromATimeOn) {
+    against(check("scalar", v1::Check::RMS, 1), "ramp").set_from(3);
+    EXPECT_DOUBLE_EQ(only().error, 1);
+}
+
 TEST_F(Verify, AlongALine) {
     against(check("line", v1::Check::RMS, 2), "ramp").add_at(10);
     EXPECT_DOUBLE_EQ(only().error, std::sqrt((1.0 + 0 + 4) / 3));

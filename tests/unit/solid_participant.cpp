@@ -121,6 +121,14 @@ TEST_F(SolidParticipant, ReadyTellsTheInterfaceAndTheLimit) {
     EXPECT_NEAR(ready_.ledger().mass(), 2, 1e-14);
 }
 
+TEST_F(SolidParticipant, AnInsulatedBodySaysSoOfItsChains) {
+    add_body("shielded", 2.5, v1::Body::FIXED).set_insulated(true);
+    configure();
+    ASSERT_EQ(chains_.size(), 2u);
+    EXPECT_FALSE(chains_[0].insulated);
+    EXPECT_TRUE(chains_[1].insulated);
+}
+
 TEST_F(SolidParticipant, LedgerBooksWhatCameIn) {
     configure();
     const v1::Report report = advance(0.25, -3, 0.01);
@@ -138,12 +146,40 @@ TEST_F(SolidParticipant, LedgerBooksWhatCameIn) {
 TEST_F(SolidParticipant, ADeformableBodyMovesItsInterface) {
     configure_.mutable_scene()->mutable_solid()->mutable_body(0)->set_motion(v1::Body::DEFORMABLE);
     configure();
+    const std::vector<double> start = motion_.position;
     const v1::Report report = advance(0.25, 0, 0.01);
     EXPECT_GT(motion_.position[0], 0.5);
     EXPECT_GT(motion_.velocity[0], 0);
     EXPECT_GT(report.ledger().work(), 0);
+    double way = 0; // of all nodes together
+    for (std::size_t i = 0; i < motion_.nodes(); ++i) {
+        way += motion_.position[2 * i] - start[2 * i];
+    }
+    EXPECT_NEAR(report.ledger().work(), 0.01 * way, 1e-14 * way);
     EXPECT_GT(report.ledger().kinetic_energy(), 0);
     EXPECT_GT(report.ledger().strain_energy(), 0);
+}
+
+TEST_F(SolidParticipant, AProbeTakesTheDifferenceAlongALine) {
+    v1::Boundary& hot =
+        *configure_.mutable_scene()->mutable_solid()->mutable_body(0)->add_boundary();
+    hot.set_name("hot");
+    for (const double y : {1.0, 2.0}) {
+        v1::Vector& point = *hot.add_along();
+        point.set_x(1.5);
+        point.set_y(y);
+    }
+    hot.set_temperature(460);
+    v1::Probe& probe = add_probe("across", "temperature");
+    for (const double x : {0.5, 1.5}) {
+        v1::Vector& point = *probe.add_line();
+        point.set_x(x);
+        point.set_y(1.5);
+    }
+    probe.set_points(2);
+    probe.set_reduce(v1::Probe::DIFFERENCE);
+    configure();
+    EXPECT_NEAR(value(advance(0.01, 0, 0).sample(), "across"), 60, 1e-9);
 }
 
 TEST_F(SolidParticipant, ProbesTakeFieldsAndIntegrals) {

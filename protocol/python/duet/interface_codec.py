@@ -32,7 +32,8 @@ class Codec:
         message = self._motion(subject, start, window=0, time=0.0)
         message.motion.start = True
         for chain in chains:
-            message.motion.chain.add(node=[int(n) for n in chain.nodes], closed=chain.closed)
+            message.motion.chain.add(node=[int(n) for n in chain.nodes], closed=chain.closed,
+                                     insulated=chain.insulated)
         return message
 
     def decode_start(self, message):
@@ -40,7 +41,7 @@ class Codec:
         motion = self._expect(subject, message, "motion", window=0)
         self.nodes = len(motion.temperature) // 8
         start = self._take_motion(subject, motion, time=0.0, start=True)
-        chains = [Chain(list(chain.node), chain.closed) for chain in motion.chain]
+        chains = [Chain(list(chain.node), chain.closed, chain.insulated) for chain in motion.chain]
         self.segments = _check_chains(subject, chains, self.nodes)
         return chains, start
 

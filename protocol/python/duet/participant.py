@@ -111,25 +111,46 @@ class _FluidSide:
         self._end_is_known = False
         self._previous = self._latest = InterfaceMotion.empty()
         self._load = None
+        self._work_of_loads = self._exchanged_work = 0.0  # J/m
 
     def configure(self, configure, codec, data, ready):
         chains = []
         if data is not None:
             chains, self._latest = codec.decode_start(data.receive())
+        self._previous = self._latest
+        if data is not None:
+            self._load = InterfaceLoad(np.zeros((codec.nodes, 2)), np.zeros(codec.segments))
         self._end_is_known = SCHEDULE[configure.schedule][FLUID][0] == RECEIVE
         self._fluid.configure(configure, chains, self._latest, ready)
 
     def receive(self, window, codec, data):
         self._previous, self._latest = self._latest, codec.decode_motion(window, data.receive())
+        # The motion that has just come was made under the load that was sent last, spread over the window as the solid
+        # spreads it (_SolidSide._over).
+        ratio = self._load.length / window.length
+        work = ratio * self._load.force * (self._latest.position - self._previous.position)
+        self._work_of_loads += work.sum()
+        self._exchanged_work += abs(work).sum()
 
     def advance(self, window, report):
         start, end = self._previous, self._latest
         if not self._end_is_known:
-            start = self._latest
-            end = dataclasses.replace(
-                start, position=start.position + window.length * start.velocity,
-                time=window.time + window.length)
+            start, end = self._latest, self._predicted(window)
         self._load = self._fluid.advance(window, start, end, report)
+        self._load.time, self._load.length = window.time, window.length
+        report.ledger.work_of_loads = self._work_of_loads
+        report.ledger.exchanged_work = self._exchanged_work
+
+    def _predicted(self, window):
+        """The end of the window if acceleration and rate of the temperature go on as in the window before."""
+        before, start, w = self._previous, self._latest, window.length
+        span = start.time - before.time
+        acceleration = (start.velocity - before.velocity) / span if span > 0 else 0.0
+        rate = (start.temperature - before.temperature) / span if span > 0 else 0.0
+        return dataclasses.replace(
+            start, position=start.position + w * start.velocity + 0.5 * w**2 * acceleration,
+            velocity=start.velocity + w * acceleration, temperature=start.temperature + w * rate,
+            time=window.time + w)
 
     def send(self, window, codec, data):
         data.send(codec.encode_load(window, self._load))
@@ -137,11 +158,25 @@ class _FluidSide:
     def store(self, checkpoint, codec):
         stamp = Window(checkpoint.window, self._latest.time, 0.0)
         checkpoint.motion.CopyFrom(codec.encode_motion(stamp, self._latest).motion)
+        stamp = Window(checkpoint.window, self._previous.time, 0.0)
+        checkpoint.motion_before.CopyFrom(codec.encode_motion(stamp, self._previous).motion)
+        stamp = Window(checkpoint.window, self._load.time, self._load.length)
+        checkpoint.load.CopyFrom(codec.encode_load(stamp, self._load).load)
+        checkpoint.work_of_loads = self._work_of_loads
+        checkpoint.exchanged_work = self._exchanged_work
 
     def restore(self, checkpoint, codec):
         motion = checkpoint.motion
         self._latest = codec.decode_motion(Window(motion.window, motion.time, 0.0),
                                            v1.ToPeer(motion=motion))
+        before = checkpoint.motion_before
+        self._previous = codec.decode_motion(Window(before.window, before.time, 0.0),
+                                             v1.ToPeer(motion=before))
+        load = checkpoint.load
+        self._load = codec.decode_load(Window(load.window, load.time, load.length),
+                                       v1.ToPeer(load=load))
+        self._work_of_loads = checkpoint.work_of_loads
+        self._exchanged_work = checkpoint.exchanged_work
 
 
 class _Participant:

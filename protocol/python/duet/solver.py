@@ -40,6 +40,7 @@ class Chain:
 
     nodes: list
     closed: bool = False
+    insulated: bool = False  # no heat passes: the heat flow there is zero
 
     def segments(self):
         return len(self.nodes) if self.closed else len(self.nodes) - 1
@@ -110,5 +111,5 @@ class FluidSolver(Solver):
     def advance(self, window, start, end, report):
         """Advance over one window while the interface moves from `start` to `end`, and fill `report`.
         Return the InterfaceLoad. `end` is the solid's state if the solid advanced first, else a
-        guess: position + length * velocity."""
+        prediction: acceleration and rate of the temperature go on as in the window before."""
         raise NotImplementedError
