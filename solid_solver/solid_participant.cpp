@@ -125,7 +125,6 @@ void Participant::fill(v1::Ledger& ledger) const {
         walls += account.walls;
         sources += account.sources + account.thermoelastic;
         thermoelastic += account.thermoelastic;
-        work += body.interface_work();
         if (body.mechanics()) {
             kinetic += body.mechanics()->kinetic_energy();
             strain += body.mechanics()->strain_energy();

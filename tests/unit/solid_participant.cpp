@@ -169,7 +169,7 @@ TEST_F(SolidParticipant, AProbeTakesTheDifferenceAlongALine) {
         point.set_x(1.5);
         point.set_y(y);
     }
-    hot.set_temperature(460);
+    hot.mutable_temperature()->set_number(460);
     v1::Probe& probe = add_probe("across", "temperature");
     for (const double x : {0.5, 1.5}) {
         v1::Vector& point = *probe.add_line();
