@@ -63,7 +63,7 @@ TEST(SolidDispersion, CorrectedMassKeepsTheSpeedOfWavesToFourthOrder) {
     // (kh)^2/12 with kh = 2 pi/32; the next order is a hundredth of it.
     EXPECT_NEAR(lumped.back(), std::pow(2 * std::numbers::pi / 32, 2) / 12, 1e-4);
     EXPECT_LT(corrected.back(), 0.03 * lumped.back());
-    EXPECT_GT(fitted_order(corrected), 3.5);
+    EXPECT_GT(test::fitted_order(corrected), 3.5);
 }
 
 TEST(SolidDispersion, CorrectionKeepsMomentumAndStability) {
