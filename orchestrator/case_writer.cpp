@@ -66,7 +66,7 @@ std::string entry_text(const Message& m, const Field& field, int i) {
     case Kind::boolean:
         return r.GetBool(m, &field) ? "true" : "false";
     case Kind::text:
-        return toml_string(r.GetString(m, &field));
+        return toml_string(many ? r.GetRepeatedString(m, &field, i) : r.GetString(m, &field));
     case Kind::choice:
         return toml_string(choices(field)[static_cast<std::size_t>(r.GetEnum(m, &field)->index())]);
     case Kind::vector:

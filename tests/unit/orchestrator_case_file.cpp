@@ -298,12 +298,13 @@ void randomise(Message& m, std::mt19937& random) {
             case Kind::boolean:
                 r.SetBool(&m, &field, random() % 2 == 0);
                 break;
-            case Kind::text:
-                r.SetString(&m,
-                            &field,
-                            key.file() ? DUET_SOURCE_DIR "/CMakeLists.txt"
-                                       : "a \"b\" \\ \n\t é" + std::to_string(random()));
+            case Kind::text: {
+                const std::string text = key.file()
+                                             ? DUET_SOURCE_DIR "/CMakeLists.txt"
+                                             : "a \"b\" \\ \n\t é" + std::to_string(random());
+                field.is_repeated() ? r.AddString(&m, &field, text) : r.SetString(&m, &field, text);
                 break;
+            }
             case Kind::choice:
                 r.SetEnumValue(
                     &m,
