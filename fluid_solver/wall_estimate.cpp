@@ -37,9 +37,35 @@ WallEstimate::stretch(const Boundary& boundary, std::uint32_t cell, double half_
     return total;
 }
 
+/// dw_n/ds, w the wall's velocity: over a spacing to either side as far as the wall is smooth,
+/// since nodes closer together shake faster than the exchange can follow.
+double WallEstimate::turn_of_wall(const Boundary& boundary, std::uint32_t cell) const {
+    const auto& cells = boundary.cells();
+    struct End {
+        Vec2 position, velocity;
+    };
+    const auto end = [&](std::uint32_t WallCell::*next) {
+        std::uint32_t c = cell;
+        for (double way = 0; way < spacing_ && cells[c].*next != none && cells[c].*next != cell;) {
+            way += cells[c].length;
+            c = cells[c].*next;
+        }
+        const Segment& segment = boundary.segments()[cells[c].segment];
+        const double w = cells[c].centre;
+        return End{(1 - w) * segment.a + w * segment.b,
+                   (1 - w) * boundary.velocity(segment.node_a)
+                       + w * boundary.velocity(segment.node_b)};
+    };
+    const End before = end(&WallCell::before), after = end(&WallCell::after);
+    const double distance = norm(after.position - before.position);
+    return distance > 0 ? dot(after.velocity - before.velocity, cells[cell].normal) / distance : 0;
+}
+
 /// With w = 1 - d/(1.5 dx): flux k sum w d (T_w - T_a) / sum w d^2, the viscous traction likewise
 /// from the velocity; the pressure is extrapolated with its known slope rho (b - a_wall).n across
-/// the wall and its gradient along the wall.
+/// the wall and its gradient along the wall. Along the wall (grad u + grad u^T).n is du_t/dn +
+/// dw_n/ds, w the wall's own velocity; across it it is -2 dw_t/ds, nothing on a wall that does not
+/// stretch.
 void WallEstimate::run(const Boundary& boundary,
                        const Evaluation& evaluation,
                        const Particles& particles,
@@ -83,7 +109,10 @@ void WallEstimate::run(const Boundary& boundary,
         const Vec2 shear = slope - dot(slope, cell.normal) * cell.normal;
         loads_[c].compartment = s.compartment;
         loads_[c].heat_flux = cell.heated ? material.conductivity * steepness * s.wd[3] : 0;
-        loads_[c].traction = (s.wp / s.w) * cell.normal - material.dynamic_viscosity * shear;
+        const Vec2 tangent{cell.normal.y, -cell.normal.x};
+        const Vec2 turning = turn_of_wall(boundary, c) * tangent;
+        loads_[c].traction =
+            (s.wp / s.w) * cell.normal - material.dynamic_viscosity * (shear + turning);
     }
 }
 

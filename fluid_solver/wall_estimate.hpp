@@ -53,6 +53,8 @@ class WallEstimate {
     };
     Sums stretch(const Boundary& boundary, std::uint32_t cell, double half_width) const;
 
+    double turn_of_wall(const Boundary& boundary, std::uint32_t cell) const;
+
     double spacing_;
     std::vector<Sums> sums_;
     std::vector<WallLoad> loads_;

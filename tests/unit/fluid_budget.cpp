@@ -244,6 +244,31 @@ TEST(FluidBudget, TheWorkOfAMovingBodyIsItsForceTimesItsWay) {
     EXPECT_NEAR(fluid.ledger().work_from_interface, -work, 1e-9 * std::abs(work));
 }
 
+TEST(FluidBudget, AFluidThatTurnsWithABodyDoesNotDragIt) {
+    // In a rigid turn there is no strain: du_t/dn and the turn of the wall itself cancel. One of
+    // them alone would make the moment 2 mu Omega times the area, or minus that.
+    Config config = closed({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, 0.05, false);
+    config.kinematic_viscosity = 1;
+    std::vector<Chain> chains;
+    InterfaceState start;
+    square_body({0.4, 0.4}, 0.2, 8, chains, start);
+    const double turn = 0.5, window = 1e-6;
+    const auto velocity = [&](Vec2 x) { return turn * Vec2{0.5 - x.y, x.x - 0.5}; };
+    InterfaceState end = start;
+    for (std::size_t i = 0; i < start.position.size(); ++i) {
+        start.velocity[i] = end.velocity[i] = velocity(start.position[i]);
+        end.position[i] += window * start.velocity[i];
+    }
+    Fluid fluid(config, chains, start);
+    fluid.set_fields([&](Vec2 x) { return Values{0, velocity(x), 0}; });
+    fluid.advance(window, start, end);
+    double moment = 0;
+    for (std::size_t i = 0; i < start.position.size(); ++i) {
+        moment += cross(start.position[i] - Vec2{0.5, 0.5}, fluid.passed().impulse[i]) / window;
+    }
+    EXPECT_NEAR(moment, 0, 1e-3 * 2 * turn * 0.04);
+}
+
 TEST(FluidBudget, WhatTheFlowLosesIsWhatViscosityTakes) {
     // A vortex runs down in a closed box: the share of the loss that neither the dissipation
     // 2 mu D:D nor any work explains falls with the spacing. Half the spacing must at least halve
