@@ -1,7 +1,9 @@
 #include "fluid_solver/fluid_participant.hpp"
 
 #include "fluid_solver/fluid_probes.hpp"
+
 #include "protocol/function.hpp"
+#include <algorithm>
 
 namespace duet::fluid {
 
@@ -121,12 +123,12 @@ void Participant::configure(const v1::Configure& configure,
                     std::map<std::string, std::string>{{"title", scene_.title()}});
     write_snapshot();
 
-    ready.set_stable_step(fluid_->stable_step());
     ready.set_unknowns(fluid_->size());
     for (const auto& line : fluid_->model()) {
         ready.add_model(line);
     }
     fill(*ready.mutable_ledger());
+    ready.set_stable_step(longest_window(ready.ledger()));
     take_probes(*ready.mutable_sample());
 }
 
@@ -141,8 +143,8 @@ void Participant::advance(const protocol::Window& window,
     pack(fluid_->passed(), window, load);
 
     report.set_steps(static_cast<std::uint32_t>(steps));
-    report.set_stable_step(fluid_->stable_step());
     fill(*report.mutable_ledger());
+    report.set_stable_step(longest_window(report.ledger()));
     if (window.sample) {
         take_probes(*report.mutable_sample());
         fluid_->mark();
@@ -153,6 +155,20 @@ void Participant::advance(const protocol::Window& window,
     if (window.snapshot) {
         write_snapshot();
     }
+}
+
+/// The fluid's own step, and no more than lets the first layer of a deformable body, rho_s ds,
+/// weigh as much as what the sound reaches in the window, rho_f c window (the solid knows c only if
+/// the scene gives it).
+double Participant::longest_window(const v1::Ledger& now) const {
+    double longest = fluid_->stable_step();
+    const double sound = scene_.fluid().density() * now.figure().at("sound_speed");
+    for (const auto& body : scene_.solid().body()) {
+        if (body.motion() == v1::Body::DEFORMABLE && body.has_element_size() && sound > 0) {
+            longest = std::min(longest, body.density() * body.element_size() / sound);
+        }
+    }
+    return longest;
 }
 
 std::string Participant::save() const {

@@ -32,6 +32,7 @@ class Participant : public protocol::FluidSolver {
     void finish() override;
 
   private:
+    double longest_window(const v1::Ledger& now) const;
     void fill(v1::Ledger& ledger) const;
     void take_probes(google::protobuf::RepeatedPtrField<v1::Sample>& samples) const;
     void write_snapshot();
