@@ -16,9 +16,10 @@ namespace {
 
 // Rough constants of the estimate, from runs on one core of an ordinary machine.
 constexpr double particle_steps_per_second = 1.3e6; // full particle steps a CPU second
-constexpr double implicit_step_worth = 150;         // explicit steps, docs/performance.md
-constexpr double implicit_heat_step_worth = 30;     // the same of a body without mechanics
-constexpr double node_steps_per_second = 1e8;       // heat steps of a solid's node a CPU second
+// What an implicit step costs in explicit ones (docs/performance.md): of a body that heats itself,
+// of one that does not, and of heat alone.
+constexpr double heated_step_worth = 120, unheated_step_worth = 30, heat_step_worth = 80;
+constexpr double node_steps_per_second = 1e8; // heat steps of a solid's node a CPU second
 constexpr double bytes_per_particle = 1500;
 constexpr double bytes_per_node = 500;
 constexpr double bytes_of_a_process = 30e6;
@@ -202,8 +203,10 @@ double explicit_step(const v1::Body& body, const Estimate& e) {
 /// The solid decides with its own stable step; this is what it is likely to say.
 std::string automatic_steps(const v1::Body& body, const Estimate& e) {
     const double steps = e.window / explicit_step(body, e);
-    const double worth =
-        body.motion() == v1::Body::DEFORMABLE ? implicit_step_worth : implicit_heat_step_worth;
+    const double worth = body.motion() != v1::Body::DEFORMABLE ? heat_step_worth
+                         : body.thermoelastic_heating() && body.thermal_expansion() != 0
+                             ? heated_step_worth
+                             : unheated_step_worth;
     if (!(steps > 0))
         return "explicit or implicit, as the first window shows";
     return std::string(steps > worth ? "implicit" : "explicit") + " (about "

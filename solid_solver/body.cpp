@@ -155,7 +155,8 @@ std::uint32_t Body::advance(double length) {
 
 Body::Plan Body::plan(double length) const {
     // What an implicit step costs in explicit ones: measured, docs/performance.md.
-    const double worth = mechanics_ ? 150 : 30;
+    const bool heated = mechanics_ && mechanics_->elasticity().heats_itself();
+    const double worth = !mechanics_ ? 80 : heated ? 120 : 30;
     const double limit = safety * stable_step();
     const double steps = limit > 0 ? std::max(1.0, std::ceil(length / limit)) : 1;
     if (config_.stepping != Stepping::automatic || !implicit_) {

@@ -192,5 +192,36 @@ TEST(SolidImplicit, RestoredStateGoesOnInTheSameBits) {
     EXPECT_EQ(save_state(whole), save_state(resumed));
 }
 
+TEST(SolidImplicit, AutomaticStepsGoByTheCost) {
+    BodyConfig config = coupled_square();
+    config.stepping = Stepping::automatic;
+    for (const bool longer : {false, true}) {
+        Body body(config);
+        const double window = (longer ? 1000 : 10) * body.stable_step();
+        const Body::Plan plan = body.plan(window);
+        EXPECT_EQ(plan.implicit, longer) << plan.reason;
+        EXPECT_NEAR(plan.explicit_steps, (longer ? 1000 : 10) / 0.9, 1);
+        EXPECT_EQ(body.advance(window), longer ? 1u : static_cast<unsigned>(plan.explicit_steps));
+        EXPECT_EQ(body.implicit()->factorisations(), longer ? 1u : 0u);
+        body.advance(0.001 * window); // once chosen it stays so: the scheme does not change midway
+        EXPECT_EQ(body.implicit()->factorisations() > 0, longer);
+    }
+}
+
+TEST(SolidImplicit, OneAndTwoThreadsGiveTheSameBits) {
+    std::vector<std::string> states;
+    for (const int threads : {1, 2}) {
+        BodyConfig config = coupled_square();
+        config.mesh = rectangle_mesh({0, 0}, 1, 1, 1.0 / 60); // 10 920 domains: two pieces
+        config.threads = threads;
+        Solid solid({config}, {});
+        Body& body = solid.bodies()[0];
+        body.set_interface_load(std::vector<double>(body.nodes(), 0.0), pull(body, 0.01));
+        body.advance(0.1);
+        states.push_back(save_state(solid));
+    }
+    EXPECT_EQ(states[0], states[1]);
+}
+
 } // namespace
 } // namespace duet::solid

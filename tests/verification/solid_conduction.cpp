@@ -49,8 +49,10 @@ std::array<double, 3> errors(int cells, bool square, Smoothing smoothing, Steppi
     for (std::size_t i = 0; i < 3; ++i) {
         const double fourier = std::array{0.05, 0.1, 0.2}[i];
         if (stepping == Stepping::implicit_steps) {
-            for (; time < fourier - 1e-9; time += 0.1 * h) { // of second order in time
-                body.advance(0.1 * h);
+            // Of second order in time, with eight steps at least to the first time looked at.
+            const double dt = 0.0625 * h;
+            for (; time < fourier - 1e-9; time += dt) {
+                body.advance(dt);
             }
         }
         // dt = h2/10, within the bound of either kind of domain: time and space errors fall alike.
@@ -73,16 +75,19 @@ class Conduction : public testing::TestWithParam<std::tuple<bool, Smoothing, Ste
 
 TEST_P(Conduction, IsOfSecondOrder) {
     const auto [square, smoothing, stepping] = GetParam();
+    // Implicit steps have no error of first order to go with that of the mesh, which in the
+    // square's centre, where the diagonals meet, falls with its square from 20 cells on.
+    const int coarsest = square && stepping == Stepping::implicit_steps ? 20 : 10;
     std::array<std::array<double, 3>, 3> error;
     for (std::size_t level = 0; level < 3; ++level) {
-        error[level] = errors(10 << level, square, smoothing, stepping);
+        error[level] = errors(coarsest << level, square, smoothing, stepping);
     }
     for (std::size_t i = 0; i < 3; ++i) {
         const double order = test::fitted_order({error[0][i], error[1][i], error[2][i]});
         RecordProperty("order_" + std::to_string(i), std::to_string(order));
         EXPECT_GE(order, 1.9) << "errors " << error[0][i] << ' ' << error[1][i] << ' '
                               << error[2][i];
-        EXPECT_LT(error[2][i], 6e-4); // of 1, at 40 cells
+        EXPECT_LT(error[2][i], 6e-4); // of 1, at 40 cells or more
     }
 }
 

