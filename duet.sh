@@ -184,6 +184,26 @@ run_tests() {
         }' "$log"
 }
 
+# -------------------------------------------------------------------------------------------- draw
+
+# The histories of the run just made, beside the references of its case, as a picture in its folder.
+draw_histories() {
+    local folder= arguments=("$@") i
+    for i in "${!arguments[@]}"; do
+        case ${arguments[i]} in
+        --output) folder=${arguments[i + 1]:-} ;;
+        --output=*) folder=${arguments[i]#--output=} ;;
+        -h | --help) return ;;
+        esac
+    done
+    [[ $folder ]] || folder=$(ls -1td runs/*/ 2>/dev/null | head -n 1)
+    folder=${folder%/}
+    if [[ -s $folder/probes.csv && $folder/probes.csv -nt $started ]] \
+        && "$root/tools/plot_probes.py" "$folder" --output "$folder/probes.png" 2>/dev/null; then
+        echo "its histories, beside their references, are drawn in $folder/probes.png"
+    fi
+}
+
 # -------------------------------------------------------------------------------------------- main
 
 set_up() (
@@ -206,6 +226,16 @@ test)
         exit 1
     fi
     run_tests "${@:2}"
+    ;;
+run | verify)
+    set_up "${programs[@]}"
+    status=0
+    started=$build/.started
+    touch "$started"
+    # Should this script be killed, the run ends as if it had been told to.
+    setpriv --pdeathsig TERM "$build/bin/duet" "$@" || status=$?
+    [[ $status -gt 1 ]] || draw_histories "$@"
+    exit "$status"
     ;;
 *)
     set_up "${programs[@]}"

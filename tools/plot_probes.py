@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """Draws the histories that a run recorded in probes.csv, with reference data over them.
 
-    tools/plot_probes.py runs/hot_plate-... --reference cases/hot_plate/reference/history.csv -o out.png
+    tools/plot_probes.py runs/hot_plate-... -o out.png
 
-Which column of a reference file belongs to which probe is read from the checks of the run's
+Which column of which reference file belongs to which probe is read from the checks of the run's
 case.toml, or given as PROBE=FILE:COLUMN.
 """
 
@@ -30,7 +30,8 @@ def arguments():
         nargs="+",
         default=[],
         metavar="CSV",
-        help="FILE, whose columns the case's checks name, or PROBE=FILE:COLUMN",
+        help="FILE, whose columns the case's checks name, or PROBE=FILE:COLUMN "
+        "(default: every file that the checks name)",
     )
     parser.add_argument("--title", help="heading (default: the case's title)")
     return parser.parse_args()
@@ -62,6 +63,15 @@ def references(requests, case):
                 fail(f"{path} has no column {column}; it has {', '.join(table)}")
             found[probe] = (times, table[column])
     return found
+
+
+def named_histories(case, names):
+    """The references of the drawn probes that the case's checks name and that are still there."""
+    return [
+        f"{check['quantity']}={check['reference']}:{check['column']}"
+        for check in case.get("check", [])
+        if check.get("column") and check["quantity"] in names and Path(check["reference"]).is_file()
+    ]
 
 
 def panels(names, case):
@@ -121,7 +131,7 @@ def main():
             fail(f"the run has no probe {name}; it has {known}")
     if not names:
         fail(f"{folder / 'probes.csv'} holds no probe; give the case a [[probe]]")
-    reference = references(options.reference, case)
+    reference = references(options.reference or named_histories(case, names), case)
     plt.rcParams.update(STYLE)
     title = options.title if options.title is not None else case.get("title", "")
     draw(table, panels(names, case), reference, title, options.output)
