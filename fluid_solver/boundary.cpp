@@ -9,43 +9,25 @@
 
 namespace duet::fluid {
 
-namespace {
-
-double signed_area(const std::vector<Vec2>& polygon) {
-    double twice = 0;
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-        twice += cross(polygon[i], polygon[(i + 1) % polygon.size()]);
-    }
-    return twice / 2;
-}
-
 double distance_to_segment(Vec2 x, Vec2 a, Vec2 b) {
     const Vec2 t = b - a;
     const double s = std::clamp(dot(x - a, t) / dot(t, t), 0.0, 1.0);
     return norm(x - a - s * t);
 }
 
-std::string print(Vec2 x) {
-    return "(" + std::to_string(x.x) + ", " + std::to_string(x.y) + ")";
-}
-
-} // namespace
-
 Boundary::Boundary(const Config& config,
                    const std::vector<Chain>& chains,
                    const InterfaceState& state)
     : spacing_(config.spacing), support_(support_in_spacings * config.spacing), chains_(chains),
+      walls_(config.walls), conductivity_(config.conductivity),
       interface_nodes_(state.position.size()), position_(state.position) {
-    std::vector<Vec2> corners = config.region;
-    if (signed_area(corners) > 0) {
-        std::reverse(corners.begin(), corners.end());
+    add_loop(config.region, false);
+    for (const std::vector<Vec2>& hole : config.holes) {
+        add_loop(hole, true);
     }
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-        sides_.push_back({corners[i], corners[(i + 1) % corners.size()], none});
-    }
-    assign_walls(config);
-    Vec2 lower = corners[0], upper = corners[0];
-    for (const Vec2 c : corners) {
+    assign_walls();
+    Vec2 lower = config.region[0], upper = lower;
+    for (const Vec2 c : config.region) {
         lower = {std::min(lower.x, c.x), std::min(lower.y, c.y)};
         upper = {std::max(upper.x, c.x), std::max(upper.y, c.y)};
     }
@@ -55,31 +37,6 @@ Boundary::Boundary(const Config& config,
     }
     build();
     set_values(state.velocity, std::vector<Vec2>(interface_nodes_), state.temperature);
-}
-
-void Boundary::assign_walls(const Config& config) {
-    const double tolerance = 1e-6 * config.spacing;
-    for (std::size_t w = 0; w < config.walls.size(); ++w) {
-        const Wall& wall = config.walls[w];
-        bool found = false;
-        for (Side& side : sides_) {
-            if (distance_to_segment(side.a, wall.from, wall.to) < tolerance
-                && distance_to_segment(side.b, wall.from, wall.to) < tolerance) {
-                side.wall = static_cast<std::uint32_t>(w);
-                found = true;
-            }
-        }
-        if (!found) {
-            throw SceneError("wall '" + wall.name + "' from " + print(wall.from) + " to "
-                             + print(wall.to)
-                             + " covers no side of the fluid's region; let it run from corner to "
-                               "corner (add corners to the region to split a side)");
-        }
-        wall_names_.push_back(wall.name);
-        wall_heated_.push_back(wall.temperature.has_value());
-        wall_temperature_.push_back(wall.temperature.value_or(0));
-        wall_velocity_.push_back(wall.velocity);
-    }
 }
 
 void Boundary::place(const std::vector<Vec2>& positions) {
@@ -97,12 +54,14 @@ void Boundary::build() {
     velocity_.resize(interface_nodes_);
     acceleration_.resize(interface_nodes_);
     temperature_.resize(interface_nodes_);
-    wall_length_.assign(wall_names_.size(), 0);
+    wall_length_.assign(walls_.size(), 0);
+    wall_nodes_.clear();
     for (const Chain& chain : chains_) {
         add_chain(chain);
     }
     add_walls();
     register_faces();
+    set_walls(time_);
 }
 
 void Boundary::add_chain(const Chain& chain) {
@@ -209,110 +168,20 @@ void Boundary::add_cells(std::uint32_t segment, const Face& face) {
 }
 
 void Boundary::link_cells(const Chain& chain, std::uint32_t first) {
-    // Across a joint that turns by less than 30 degrees the surface counts as smooth.
-    const double smooth = std::cos(std::acos(-1.0) / 6);
     const auto count = static_cast<std::uint32_t>(chain.segments());
     for (std::uint32_t j = chain.closed ? 0 : 1; j < count; ++j) {
-        const Segment& from = segments_[first + (j + count - 1) % count];
-        const Segment& to = segments_[first + j];
-        const std::uint32_t before = from.first_cell + from.cells - 1;
-        if (dot(cells_[before].normal, cells_[to.first_cell].normal) > smooth) {
-            cells_[before].after = to.first_cell;
-            cells_[to.first_cell].before = before;
-        }
+        link(segments_[first + (j + count - 1) % count], segments_[first + j]);
     }
 }
 
-double Boundary::perimeter_position(Vec2 x) const {
-    double arc = 0, best = 0, nearest = std::numeric_limits<double>::infinity();
-    for (const Side& side : sides_) {
-        const double d = distance_to_segment(x, side.a, side.b);
-        const double length = norm(side.b - side.a);
-        if (d < nearest) {
-            nearest = d;
-            best = arc + std::clamp(dot(x - side.a, side.b - side.a) / length, 0.0, length);
-        }
-        arc += length;
+/// Across a joint that turns by less than 30 degrees the surface counts as smooth.
+void Boundary::link(const Segment& from, const Segment& to) {
+    const double smooth = std::cos(std::acos(-1.0) / 6);
+    const std::uint32_t before = from.first_cell + from.cells - 1;
+    if (dot(cells_[before].normal, cells_[to.first_cell].normal) > smooth) {
+        cells_[before].after = to.first_cell;
+        cells_[to.first_cell].before = before;
     }
-    if (nearest > 1e-3 * spacing_) {
-        throw SceneError("a chain of the interface ends at " + print(x) + ", "
-                         + std::to_string(nearest)
-                         + " m from the cavity's boundary; let the solid lean on a wall there, or "
-                           "close the chain");
-    }
-    return best;
-}
-
-void Boundary::add_walls() {
-    struct End {
-        double arc;
-        bool chain_starts;
-    };
-    std::vector<End> ends;
-    double perimeter = 0;
-    for (const Side& side : sides_) {
-        perimeter += norm(side.b - side.a);
-    }
-    for (const Chain& chain : chains_) {
-        if (!chain.closed) {
-            ends.push_back({perimeter_position(position_[chain.nodes.front()]), true});
-            ends.push_back({perimeter_position(position_[chain.nodes.back()]), false});
-        }
-    }
-    std::sort(ends.begin(), ends.end(), [](End p, End q) { return p.arc < q.arc; });
-    for (std::size_t i = 0; i < ends.size(); ++i) {
-        if (ends[i].chain_starts == ends[(i + 1) % ends.size()].chain_starts) {
-            throw SceneError("the interface chains that end on the cavity's boundary overlap each "
-                             "other near arc length "
-                             + std::to_string(ends[i].arc) + " m of the boundary");
-        }
-    }
-    // The wall is kept from where a chain ends to where the next one starts.
-    const auto keep = [&](double from, double to) {
-        double arc = 0;
-        for (const Side& side : sides_) {
-            const double length = norm(side.b - side.a);
-            const double p = std::max(from - arc, 0.0) / length;
-            const double q = std::min(to - arc, length) / length;
-            if ((q - p) * length > 1e-9 * spacing_) {
-                const Vec2 t = side.b - side.a;
-                add_side({p == 0 ? side.a : side.a + p * t,
-                          q == 1 ? side.b : side.a + q * t,
-                          side.wall});
-            }
-            arc += length;
-        }
-    };
-    if (ends.empty()) {
-        keep(0, perimeter);
-        return;
-    }
-    for (std::size_t i = 0; i < ends.size(); ++i) {
-        if (!ends[i].chain_starts) {
-            if (i + 1 < ends.size()) {
-                keep(ends[i].arc, ends[i + 1].arc);
-            } else {
-                keep(ends[i].arc, perimeter);
-                keep(0, ends[0].arc);
-            }
-        }
-    }
-}
-
-void Boundary::add_side(const Side& side) {
-    const auto node = static_cast<std::uint32_t>(velocity_.size());
-    const bool named = side.wall != none;
-    const double length = norm(side.b - side.a);
-    segments_.push_back({side.a, side.b, node, node + 1, side.wall, length, 0, 0, 0});
-    for (int end = 0; end < 2; ++end) {
-        velocity_.push_back(named ? wall_velocity_[side.wall] : Vec2{});
-        acceleration_.push_back({});
-        temperature_.push_back(named ? wall_temperature_[side.wall] : 0);
-    }
-    if (named) {
-        wall_length_[side.wall] += length;
-    }
-    add_face(static_cast<std::uint32_t>(segments_.size()) - 1, 1, named && wall_heated_[side.wall]);
 }
 
 void Boundary::register_faces() {
@@ -487,7 +356,11 @@ double Boundary::speed() const {
 }
 
 bool Boundary::heated() const {
-    return std::any_of(faces_.begin(), faces_.end(), [](const Face& f) { return f.heated; });
+    const auto flux = [](const Wall& wall) {
+        return !wall.heat_flux.is_number() || wall.heat_flux({}, 0) != 0;
+    };
+    return std::any_of(faces_.begin(), faces_.end(), [](const Face& f) { return f.heated; })
+           || std::any_of(walls_.begin(), walls_.end(), flux);
 }
 
 } // namespace duet::fluid

@@ -62,7 +62,14 @@ struct Contact {
     bool on_wall() const { return before() >= 0 && after() >= 0; }
 };
 
-/// Values of the wall at a point: lanes u, v, 0, T.
+double distance_to_segment(Vec2 x, Vec2 a, Vec2 b);
+
+/// Corners of a polygon that stands for a circle: as many that its sides deviate from it by less
+/// than 0.02 spacings and are no longer than two, on a radius that makes the areas equal.
+std::vector<Vec2> circle(Vec2 centre, double radius, double spacing);
+
+/// Values of the wall at a point: lanes u, v, 0, T. Where the temperature is not known, T holds its
+/// slope along the normal instead, K/m.
 struct WallPoint {
     Lanes value;
     Vec2 acceleration;
@@ -77,6 +84,9 @@ class Boundary {
 
     /// Moves the interface. Rebuilds the geometry only if a node has moved.
     void place(const std::vector<Vec2>& positions);
+
+    /// Sets the values of the walls to those of the time, s.
+    void set_walls(double time);
 
     /// Sets the values of the interface nodes: velocity, acceleration, temperature.
     void set_values(std::span<const Vec2> velocity,
@@ -120,7 +130,7 @@ class Boundary {
     std::size_t interface_nodes() const { return interface_nodes_; }
     /// Length of each wall of the configuration that is left beside leaning solids.
     const std::vector<double>& wall_length() const { return wall_length_; }
-    /// Whether any temperature is prescribed, by a wall or the interface.
+    /// Whether heat can pass: a wall or the interface has a temperature, or a wall a heat flux.
     bool heated() const;
     /// Largest speed of a wall or an interface node, m/s.
     double speed() const;
@@ -132,25 +142,38 @@ class Boundary {
         Vec2 a, b;
         std::uint32_t wall = none;
     };
-    void assign_walls(const Config& config);
+    /// A node of a wall, and the direction in which it can move.
+    struct WallNode {
+        std::uint32_t node;
+        Vec2 place, along;
+        std::uint32_t wall;
+    };
+
+    // walls.cpp
+    void add_loop(std::vector<Vec2> corners, bool hole);
+    void assign_walls();
+    void add_walls();
+    void keep(const std::vector<Side>& loop, double from, double to);
+    void add_side(const Side& side);
+    void link_sides(std::size_t first_face);
+    double perimeter_position(Vec2 x, std::size_t& loop) const;
+
     void build();
     void add_chain(const Chain& chain);
-    void add_walls();
-    void add_side(const Side& side);
     void add_face(std::uint32_t first, std::uint32_t segments, bool heated);
     void find_runs(std::uint32_t first);
     void add_cells(std::uint32_t segment, const Face& face);
     void link_cells(const Chain& chain, std::uint32_t first);
+    void link(const Segment& from, const Segment& to);
     void register_faces();
-    double perimeter_position(Vec2 x) const;
 
     double spacing_, support_;
     std::vector<Chain> chains_;
-    std::vector<Side> sides_; ///< the region's sides, clockwise, so that the fluid is to the right
-    std::vector<std::string> wall_names_;
-    std::vector<bool> wall_heated_;
-    std::vector<Vec2> wall_velocity_;
-    std::vector<double> wall_temperature_;
+    std::vector<std::vector<Side>> loops_; ///< the region's sides, then those of the holes
+    std::vector<Wall> walls_;
+    double conductivity_;
+    double time_ = 0;
+    std::vector<WallNode> wall_nodes_;
     std::vector<double> wall_length_;
     std::size_t interface_nodes_ = 0, interface_segments_ = 0;
 
@@ -158,7 +181,8 @@ class Boundary {
     std::vector<Segment> segments_;
     std::vector<Face> faces_;
     std::vector<WallCell> cells_;
-    std::vector<Vec2> velocity_, acceleration_; ///< by node: interface first, then two for a side
+    std::vector<Vec2> velocity_,
+        acceleration_; ///< by node: interface first, then those of each side
     std::vector<double> temperature_;
 
     CellGrid grid_;

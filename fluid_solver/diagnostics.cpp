@@ -25,6 +25,7 @@ Ledger Fluid::Implementation::ledger() const {
     l.heat = capacity * temperature - initial_heat_;
     l.mean_temperature = temperature / count;
     l.kinetic_energy = kinetic_energy();
+    l.momentum = momentum() - initial_momentum_;
     l.mechanical_residual = l.kinetic_energy - initial_kinetic_energy_ - l.work_from_interface
                             - l.work_from_walls - l.buoyancy_work + l.viscous_loss;
     const double since = time - mark_.time;
@@ -182,8 +183,10 @@ std::vector<std::string> Fluid::Implementation::model() const {
     physics << "incompressible flow by artificial compressibility, "
             << (heat_ ? "heat" : "no heat (one temperature)") << ", "
             << (buoyant_ ? "Boussinesq buoyancy" : "no buoyancy");
-    return {
-        size.str(), physics.str(), "formulation: consistent, Wendland C2, support 2.6 spacings"};
+    return {size.str(),
+            physics.str(),
+            paper_ ? "formulation: the source paper's, cubic spline, h = 1.2 spacings"
+                   : "formulation: consistent, Wendland C2, support 2.6 spacings"};
 }
 
 } // namespace duet::fluid

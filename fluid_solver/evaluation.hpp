@@ -84,6 +84,15 @@ class Evaluation {
         const std::uint8_t slot = wall_slot_[a];
         return slot == no_wall ? nullptr : &wall_[a / chunk_size][slot];
     }
+    /// A further body force b on a particle: frozen acceleration, and beside walls the part
+    /// rho b.n of the pressure's known slope.
+    void add_force(std::size_t a, Vec2 b) {
+        viscous[a] += b;
+        if (const std::uint8_t slot = wall_slot_[a]; slot != no_wall) {
+            WallTerms& terms = wall_[a / chunk_size][slot];
+            terms.L_N_acceleration -= terms.L_N_n * b;
+        }
+    }
     const Kernel& kernel() const { return kernel_; }
     const Ghosts& ghosts() const { return ghosts_; }
     double sample_depth() const { return sample_depth_; }

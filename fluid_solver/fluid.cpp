@@ -14,6 +14,7 @@ namespace {
 constexpr double courant_flow = 0.3;        ///< of dx/U, outer step
 constexpr double courant_diffusion = 0.15;  ///< of dx^2/max(nu, alpha), outer step
 constexpr double courant_sound = 1.65;      ///< of dx/c, inner step (stable to 2.0)
+constexpr double courant_paper = 0.3;       ///< of dx/(c + U), the paper's single step
 constexpr double step_tolerance = 1.05;     ///< over the outer limit rather than twice the steps
 constexpr double follow_acceleration = 0.1; ///< share of a window\'s acceleration taken up at once
 
@@ -55,12 +56,21 @@ Fluid::Implementation::Implementation(const Config& c,
       interface_position_(interface.position), interface_velocity_(interface.velocity),
       interface_acceleration_(interface.position.size()),
       interface_temperature_(interface.temperature) {
+    if (config.formulation == Formulation::paper) {
+        paper_.emplace(config.spacing, config.threads);
+    }
     heat_ = config.conductivity > 0 && boundary_.heated();
     buoyant_ = config.thermal_expansion != 0 && norm(config.gravity) > 0;
+    forced_ = !config.body_force.is_number() || norm(config.body_force({}, 0)) > 0;
+    walls_change_ = std::any_of(config.walls.begin(), config.walls.end(), [](const Wall& wall) {
+        return wall.velocity.changes() || wall.heat_flux.changes()
+               || (wall.temperature && wall.temperature->changes())
+               || (wall.rotation && wall.rotation->rate.changes());
+    });
     passed.impulse.resize(boundary_.interface_nodes());
     passed.heat.resize(boundary_.interface_segments());
     for (std::size_t w = 0; w < config.walls.size(); ++w) {
-        walls.push_back({config.walls[w].name, boundary_.wall_length()[w], 0, 0, {}});
+        walls.push_back({config.walls[w].name, boundary_.wall_length()[w], 0, 0, {}, 0});
     }
     fill();
     closure_ = Closure(compartments, config.threads);
@@ -85,6 +95,7 @@ void Fluid::Implementation::start() {
     initial_kinetic_energy_ = kinetic_energy();
     initial_heat_ = config.density * config.heat_capacity * volume
                     * sum([&](std::size_t a) { return particles.fields[a].T; });
+    initial_momentum_ = momentum();
 }
 
 void Fluid::Implementation::set_fields(const std::function<Values(Vec2)>& field) {
@@ -117,6 +128,9 @@ double Fluid::Implementation::stable_step() const {
     if (fastest() > 0) {
         limit = std::min(limit, courant_flow * dx / fastest());
     }
+    if (paper_) {
+        return std::min(limit, courant_paper * dx / (sound_speed_ + fastest()));
+    }
     // Never so long that hundreds of inner steps share one geometry.
     return std::min(limit, 50 * courant_sound * dx / sound_speed_);
 }
@@ -130,6 +144,7 @@ int Fluid::Implementation::advance(double window,
     for (WallReport& wall : walls) {
         wall.heat_flow = 0;
         wall.force = {};
+        wall.torque = 0;
     }
     follow_interface(motion);
     int steps = 0;
@@ -144,6 +159,7 @@ int Fluid::Implementation::advance(double window,
         wall.heat += wall.heat_flow;
         wall.heat_flow /= window;
         wall.force *= 1 / window;
+        wall.torque /= window;
     }
     for (const Vec2 impulse : passed.impulse) {
         totals_.impulse_from_interface -= impulse;
@@ -159,6 +175,9 @@ int Fluid::Implementation::advance(double window,
 /// One outer step: operators on the geometry of its middle, then `n` inner steps with everything
 /// but velocity and pressure frozen.
 void Fluid::Implementation::step(double dt, double elapsed, const Motion& motion) {
+    if (paper_) {
+        return paper_step(dt, elapsed, motion);
+    }
     {
         const Stamp stamp(phase_seconds_[moving]);
         move(0.5 * dt, false);
@@ -172,6 +191,9 @@ void Fluid::Implementation::step(double dt, double elapsed, const Motion& motion
     {
         const Stamp stamp(phase_seconds_[evaluating]);
         evaluate(dt);
+        if (forced_) {
+            add_body_force(time + elapsed + 0.5 * dt, dt);
+        }
     }
     {
         const Stamp stamp(phase_seconds_[inner_steps]);
@@ -210,6 +232,9 @@ void Fluid::Implementation::follow_interface(const Motion& motion) {
 /// a = (v1 - v0)/window at the mean velocity V = (x1 - x0)/window, so that its way is the integral
 /// of its velocity: x = x0 + V t + a t (t - window)/2, v = V + a (t - window/2).
 void Fluid::Implementation::place_interface(double elapsed, const Motion& motion) {
+    if (walls_change_) {
+        boundary_.set_walls(time + elapsed);
+    }
     const std::size_t nodes = boundary_.interface_nodes();
     if (nodes == 0) {
         return;
@@ -289,6 +314,24 @@ void Fluid::Implementation::evaluate(double dt) {
                      heat_});
 }
 
+void Fluid::Implementation::add_body_force(double now, double dt) {
+    given_force_.resize(particles.size());
+    Vec2 impulse;
+    for (std::size_t a = 0; a < particles.size(); ++a) {
+        const Vec2 b = config.body_force(particles.position(a), now);
+        given_force_[a] = b;
+        evaluation_.add_force(a, b);
+        impulse += b;
+    }
+    totals_.impulse_from_body_force += (dt * config.density * volume) * impulse;
+}
+
+Vec2 Fluid::Implementation::momentum() const {
+    const double m = config.density * volume;
+    return {m * sum([&](std::size_t a) { return particles.fields[a].u; }),
+            m * sum([&](std::size_t a) { return particles.fields[a].v; })};
+}
+
 void Fluid::Implementation::accelerate(double dt) {
     InnerSteps inner;
     inner.count = static_cast<int>(
@@ -312,40 +355,61 @@ void Fluid::Implementation::book(double dt) {
         evaluation_,
         particles,
         hydrostatics_,
-        {config.conductivity, config.density * config.kinematic_viscosity, config.density});
+        {config.conductivity, config.density * config.kinematic_viscosity, config.density},
+        given_force_);
+    if (buoyant_) {
+        const double temperature = sum([&](std::size_t a) { return particles.fields[a].T; });
+        const auto count = static_cast<double>(particles.size());
+        totals_.impulse_from_body_force +=
+            (dt * config.density * volume * count) * hydrostatics_.force(temperature / count);
+    }
     passed_heat_.assign(compartments, 0);
     for (std::size_t c = 0; c < boundary_.cells().size(); ++c) {
-        const WallCell& cell = boundary_.cells()[c];
+        const double length = boundary_.cells()[c].length;
         const WallLoad& load = wall_estimate_.loads()[c];
-        const Segment& segment = boundary_.segments()[cell.segment];
-        const double heat = heat_ ? dt * cell.length * load.heat_flux : 0; // into the fluid
-        const Vec2 impulse = (dt * cell.length) * load.traction;           // on the wall
+        const double heat = heat_ ? dt * length * load.heat_flux : 0;
         passed_heat_[load.compartment] += heat;
-        if (cell.segment < boundary_.interface_segments()) {
-            passed.heat[cell.segment] -= heat;
-            passed.impulse[segment.node_a] += (1 - cell.centre) * impulse;
-            passed.impulse[segment.node_b] += cell.centre * impulse;
-            const Vec2 velocity = (1 - cell.centre) * boundary_.velocity(segment.node_a)
-                                  + cell.centre * boundary_.velocity(segment.node_b);
-            totals_.work_from_interface -= dot(impulse, velocity);
-        } else {
-            totals_.heat_from_walls += heat;
-            if (segment.wall != none) {
-                totals_.work_from_walls -= dot(impulse, boundary_.velocity(segment.node_a));
-                walls[segment.wall].heat_flow += heat;
-                walls[segment.wall].force += impulse;
-            }
-        }
+        pass(static_cast<std::uint32_t>(c), heat, (dt * length) * load.traction);
     }
 }
 
-/// Books the power of the buoyancy and the viscous dissipation 2 mu D:D in this step.
+/// Books heat into the fluid and an impulse on the wall at one wall cell.
+void Fluid::Implementation::pass(std::uint32_t c, double heat, Vec2 impulse) {
+    const WallCell& cell = boundary_.cells()[c];
+    const Segment& segment = boundary_.segments()[cell.segment];
+    const Vec2 velocity = (1 - cell.centre) * boundary_.velocity(segment.node_a)
+                          + cell.centre * boundary_.velocity(segment.node_b);
+    if (cell.segment < boundary_.interface_segments()) {
+        passed.heat[cell.segment] -= heat;
+        passed.impulse[segment.node_a] += (1 - cell.centre) * impulse;
+        passed.impulse[segment.node_b] += cell.centre * impulse;
+        totals_.work_from_interface -= dot(impulse, velocity);
+        return;
+    }
+    totals_.heat_from_walls += heat;
+    totals_.impulse_from_walls -= impulse;
+    totals_.work_from_walls -= dot(impulse, velocity);
+    if (segment.wall != none) {
+        WallReport& wall = walls[segment.wall];
+        wall.heat_flow += heat;
+        wall.force += impulse;
+        wall.torque += cross(segment.a + cell.centre * (segment.b - segment.a), impulse);
+    }
+}
+
+/// Books the power of the body forces and the viscous dissipation 2 mu D:D in this step.
 void Fluid::Implementation::book_energy(double dt) {
     const double mass = config.density * volume;
     if (buoyant_) {
         totals_.buoyancy_work += dt * mass * sum([&](std::size_t a) {
                                      const Fields& f = particles.fields[a];
                                      return dot(hydrostatics_.force(f.T), {f.u, f.v});
+                                 });
+    }
+    if (forced_) {
+        totals_.buoyancy_work += dt * mass * sum([&](std::size_t a) {
+                                     const Fields& f = particles.fields[a];
+                                     return dot(given_force_[a], {f.u, f.v});
                                  });
     }
     totals_.viscous_loss += dt * mass * config.kinematic_viscosity * sum([&](std::size_t a) {
@@ -400,7 +464,7 @@ void Fluid::Implementation::level() {
             means_[k] += means_[c * compartments + k];
         }
         means_[k] /= compartment_size_[k];
-        if (buoyant_) {
+        if (buoyant_ && !paper_) { // the paper's pressure is the whole one
             hydrostatics_.levels[k] = {means_[k][1], {means_[k][2], means_[k][3]}};
         }
     }

@@ -1,5 +1,6 @@
 #include "fluid_solver/fluid_participant.hpp"
 
+#include "fluid_solver/boundary.hpp"
 #include "fluid_solver/fluid_probes.hpp"
 
 #include "protocol/function.hpp"
@@ -11,6 +12,58 @@ namespace {
 
 Vec2 to_vector(const v1::Vector& v) {
     return {v.x(), v.y()};
+}
+
+/// Throws std::invalid_argument with a sentence.
+Function to_function(const v1::Function& function) {
+    if (!function.has_formula() && !function.has_table()) {
+        return function.number();
+    }
+    const protocol::Function read(function);
+    return {read, read.depends_on_time()};
+}
+
+VectorFunction to_function(const v1::VectorFunction& function) {
+    return {to_function(function.x()), to_function(function.y())};
+}
+
+template <class Corners>
+std::vector<Vec2>
+polygon(const Corners& corners, bool is_circle, const v1::Disc& round, double spacing) {
+    if (is_circle) {
+        return circle(to_vector(round.centre()), round.radius(), spacing);
+    }
+    std::vector<Vec2> out;
+    for (const auto& corner : corners) {
+        out.push_back(to_vector(corner));
+    }
+    return out;
+}
+
+Wall wall_of(const v1::Wall& wall, const v1::Fluid& fluid) {
+    Wall w;
+    w.name = wall.name();
+    if (wall.along_size() == 2) {
+        w.from = to_vector(wall.along(0));
+        w.to = to_vector(wall.along(1));
+    }
+    if (wall.around() == "region") {
+        w.around = 0;
+    }
+    for (int h = 0; h < fluid.hole_size(); ++h) {
+        if (wall.around() == fluid.hole(h).name()) {
+            w.around = static_cast<std::size_t>(h) + 1;
+        }
+    }
+    if (wall.has_temperature()) {
+        w.temperature = to_function(wall.temperature());
+    }
+    w.velocity = to_function(wall.velocity());
+    if (wall.has_rotation()) {
+        w.rotation = {to_vector(wall.rotation().centre()), to_function(wall.rotation().rate())};
+    }
+    w.heat_flux = to_function(wall.heat_flux());
+    return w;
 }
 
 /// Unpacks [N][2] and [N] arrays into the core's state, reusing its storage.
@@ -51,6 +104,8 @@ template <typename Work>
 auto reported(Work&& work) {
     try {
         return work();
+    } catch (const std::invalid_argument& error) { // a formula that cannot be read
+        throw protocol::Error(v1::Failed::SCENE, error.what());
     } catch (const SceneError& error) {
         throw protocol::Error(v1::Failed::SCENE, error.what());
     } catch (const Diverged& error) {
@@ -63,9 +118,13 @@ auto reported(Work&& work) {
 Config config_from_scene(const v1::Scene& scene, unsigned threads) {
     const auto& fluid = scene.fluid();
     Config config;
+    config.formulation =
+        fluid.formulation() == v1::Fluid::PAPER ? Formulation::paper : Formulation::consistent;
     config.spacing = fluid.spacing();
-    for (const auto& corner : fluid.region()) {
-        config.region.push_back(to_vector(corner));
+    config.region = polygon(fluid.region(), fluid.has_disc(), fluid.disc(), config.spacing);
+    for (const auto& hole : fluid.hole()) {
+        config.holes.push_back(
+            polygon(hole.corners(), hole.has_disc(), hole.disc(), config.spacing));
     }
     config.density = fluid.density();
     config.kinematic_viscosity = fluid.kinematic_viscosity();
@@ -73,19 +132,12 @@ Config config_from_scene(const v1::Scene& scene, unsigned threads) {
     config.conductivity = fluid.conductivity();
     config.thermal_expansion = fluid.thermal_expansion();
     config.reference_temperature = fluid.reference_temperature();
-    config.initial_temperature =
-        protocol::number_of(fluid.initial_temperature(), "initial_temperature of the fluid");
-    config.initial_velocity = to_vector(fluid.initial_velocity());
+    config.initial_temperature = to_function(fluid.initial_temperature());
+    config.initial_velocity = to_function(fluid.initial_velocity());
     config.gravity = to_vector(scene.gravity());
+    config.body_force = to_function(fluid.body_force());
     for (const auto& wall : fluid.wall()) {
-        Wall& w = config.walls.emplace_back();
-        w.name = wall.name();
-        w.from = to_vector(wall.along(0));
-        w.to = to_vector(wall.along(1));
-        if (wall.has_temperature()) {
-            w.temperature = wall.temperature();
-        }
-        w.velocity = to_vector(wall.velocity());
+        config.walls.push_back(wall_of(wall, fluid));
     }
     config.pressure_level =
         fluid.pressure_level() == v1::Fluid::FREE ? PressureLevel::free : PressureLevel::zero_mean;
@@ -206,6 +258,12 @@ void Participant::fill(v1::Ledger& ledger) const {
     figure["viscous_loss"] = now.viscous_loss;
     figure["work_from_walls"] = now.work_from_walls;
     figure["mechanical_residual"] = now.mechanical_residual;
+    figure["momentum_x"] = now.momentum.x;
+    figure["momentum_y"] = now.momentum.y;
+    figure["impulse_from_walls_x"] = now.impulse_from_walls.x;
+    figure["impulse_from_walls_y"] = now.impulse_from_walls.y;
+    figure["impulse_from_body_force_x"] = now.impulse_from_body_force.x;
+    figure["impulse_from_body_force_y"] = now.impulse_from_body_force.y;
     figure["max_speed"] = now.max_speed;
     figure["sound_speed"] = now.sound_speed;
 }

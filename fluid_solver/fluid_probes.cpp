@@ -40,13 +40,13 @@ constexpr Integral integrals[] = {
     {"mass", [](const Ledger& l) { return l.mass; }},
 };
 
-/// Largest difference between the temperatures prescribed on the walls.
+/// Largest difference between the temperatures prescribed on the walls, if they are numbers.
 double wall_temperature_difference(const v1::Scene& scene) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const auto& wall : scene.fluid().wall()) {
-        if (wall.has_temperature()) {
-            low = std::min(low, wall.temperature());
-            high = std::max(high, wall.temperature());
+        if (wall.temperature().has_number()) {
+            low = std::min(low, wall.temperature().number());
+            high = std::max(high, wall.temperature().number());
         }
     }
     return high - low;
@@ -100,6 +100,7 @@ constexpr WallQuantity wall_quantities[] = {
     {"nusselt", nusselt},
     {"force_x", [](const WallReport& w, const v1::Scene&) { return w.force.x; }},
     {"force_y", [](const WallReport& w, const v1::Scene&) { return w.force.y; }},
+    {"torque", [](const WallReport& w, const v1::Scene&) { return w.torque; }},
 };
 
 template <typename Table>

@@ -46,30 +46,19 @@ void add_values(
     sums.K_value += K * value;
 }
 
-/// Known normal slope for the pressure and, on adiabatic faces, the temperature.
-void add_slopes(const Contact& contact, Vec2 acceleration, Vec2 N, WallSums& sums) {
+/// Known normal slope for the pressure and, on faces of known heat flux, the temperature.
+void add_slopes(const Contact& contact, const WallPoint& foot, Vec2 N, WallSums& sums) {
     const Vec2 n = contact.normal;
     sums.N_n += outer(N, n);
-    sums.N_acceleration += dot(acceleration, n) * N;
+    sums.N_acceleration += dot(foot.acceleration, n) * N;
     if (!contact.face->heated) {
+        sums.Sx_value[3] += foot.value[3] * N.x;
+        sums.Sy_value[3] += foot.value[3] * N.y;
         const Symmetric n_n = square(n);
         sums.adiabatic.N_n += outer(N, n);
         add(sums.adiabatic.N_d_n_n[0], 2 * contact.distance * N.x, n_n);
         add(sums.adiabatic.N_d_n_n[1], 2 * contact.distance * N.y, n_n);
     }
-}
-
-/// The fraction of the way from the particle to the point at r where it crosses the wall; above one
-/// if it does not.
-double crossing(const Contact& contact, Vec2 r) {
-    const double behind = dot(r, contact.normal) - contact.distance;
-    if (behind <= 0) {
-        return 2;
-    }
-    const double fraction = contact.distance / (contact.distance + behind);
-    const double ahead = fraction * dot(r, contact.tangent);
-    const double slack = 1e-9 * (contact.distance + behind);
-    return ahead >= -contact.before() - slack && ahead <= contact.after() + slack ? fraction : 2;
 }
 
 } // namespace
@@ -80,6 +69,17 @@ Ghosts::Ghosts(double spacing)
     for (int i = 0; i <= table_intervals; ++i) {
         table_.push_back(direct(kernel_.support() * i / table_intervals));
     }
+}
+
+double Ghosts::crossing(const Contact& contact, Vec2 r) {
+    const double behind = dot(r, contact.normal) - contact.distance;
+    if (behind <= 0) {
+        return 2;
+    }
+    const double fraction = contact.distance / (contact.distance + behind);
+    const double ahead = fraction * dot(r, contact.tangent);
+    const double slack = 1e-9 * (contact.distance + behind);
+    return ahead >= -contact.before() - slack && ahead <= contact.after() + slack ? fraction : 2;
 }
 
 Ghosts::Straight Ghosts::direct(double d1) const {
@@ -134,7 +134,7 @@ void Ghosts::add_straight(const Boundary& boundary, const Contact& contact, Wall
     const double K = 2 * (s.F0 + s.F1 / least);
     const WallPoint wall = boundary.at(*contact.face, contact.foot);
     add_values(*contact.face, wall, S * n, K, d1 * n, sums);
-    add_slopes(contact, wall.acceleration, s.N * n, sums);
+    add_slopes(contact, wall, s.N * n, sums);
     sums.C += s.C * n;
 }
 
@@ -299,7 +299,7 @@ void Ghosts::add_direct(const Boundary& boundary,
     sums.Sx_value += contact.normal.x * value_n + contact.tangent.x * value_t;
     sums.Sy_value += contact.normal.y * value_n + contact.tangent.y * value_t;
     sums.K_value += K_value;
-    add_slopes(contact, boundary.at(face, contact.foot).acceleration, turned(N, contact), sums);
+    add_slopes(contact, boundary.at(face, contact.foot), turned(N, contact), sums);
 }
 
 void Ghosts::sums(const Boundary& boundary,

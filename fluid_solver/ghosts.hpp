@@ -53,7 +53,7 @@ struct WallSums {
     Mat2 N_n;                  ///< sum N n^T over all walls, for the pressure
     Vec2 N_acceleration;       ///< sum N (a_wall . n)
     Vec2 C;                    ///< sum V gradW, for the shift
-    Lanes Sx_value, Sy_value;  ///< sum S f_wall, lanes u, v, 0, T
+    Lanes Sx_value, Sy_value;  ///< sum S f_wall, lanes u, v, 0, T; of known slopes sum N slope
     Lanes K_value;             ///< sum K f_wall
 };
 
@@ -66,6 +66,45 @@ class Ghosts {
 
     /// Whether the line from the particle to the point at x + r is cut by one of the walls it sees.
     static bool hidden(const std::vector<Contact>& contacts, Vec2 r);
+
+    /// The fraction of the way from the particle to the point at x + r where it crosses the wall;
+    /// above one if it does not.
+    static double crossing(const Contact& contact, Vec2 r);
+
+    /// Calls visit(r, d2, volume, fraction) for each ghost behind the wall of `contact` that lies
+    /// closer to the particle than `support`: r from the particle to the ghost, d2 the ghost's
+    /// distance behind it, `fraction` as by crossing(). A ghost belongs to the wall that the
+    /// line to it crosses first; on a tie, by halves.
+    template <class Visit>
+    void for_each(const Contact& contact,
+                  const std::vector<Contact>& all,
+                  double support,
+                  const Visit& visit) const {
+        const double d1 = contact.distance;
+        const int columns = static_cast<int>(support / lattice_) + 1;
+        for (double d2 = lattice_ / 2; d1 + d2 < support; d2 += lattice_) {
+            for (int i = -columns; i < columns; ++i) {
+                const double along = (i + 0.5) * lattice_;
+                if ((d1 + d2) * (d1 + d2) + along * along >= support * support) {
+                    continue;
+                }
+                const Vec2 r = (d1 + d2) * contact.normal + along * contact.tangent;
+                const double fraction = crossing(contact, r);
+                double share = fraction > 1 ? 0 : 1;
+                for (const Contact& other : all) {
+                    const double theirs = &other == &contact ? 2 : crossing(other, r);
+                    if (theirs < fraction - 1e-9) {
+                        share = 0;
+                    } else if (theirs < fraction + 1e-9) {
+                        share *= 0.5;
+                    }
+                }
+                if (share > 0) {
+                    visit(r, d2, share * volume_, fraction);
+                }
+            }
+        }
+    }
 
     /// Scalar sums behind an endless straight wall at distance d1, components along its normal:
     /// F0 = sum V F, F1 = sum V F d2, C = sum V gradW, N = sum V gradW (n.x_ga).

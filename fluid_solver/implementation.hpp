@@ -7,11 +7,13 @@
 #include "fluid_solver/evaluation.hpp"
 #include "fluid_solver/fluid.hpp"
 #include "fluid_solver/hydrostatics.hpp"
+#include "fluid_solver/paper_formulation.hpp"
 #include "fluid_solver/particles.hpp"
 #include "fluid_solver/pressure.hpp"
 #include "fluid_solver/wall_estimate.hpp"
 
 #include <array>
+#include <optional>
 #include <vector>
 
 namespace duet::fluid {
@@ -56,6 +58,9 @@ class Fluid::Implementation {
     void relax();
     void find_compartments();
 
+    // paper_step.cpp
+    void paper_step(double dt, double elapsed, const Motion& motion);
+
     // fluid.cpp
     void step(double dt, double elapsed, const Motion& motion);
     void follow_interface(const Motion& motion);
@@ -64,10 +69,13 @@ class Fluid::Implementation {
     void move(double dt, bool with_shift);
     void keep_inside();
     void evaluate(double dt);
+    void add_body_force(double now, double dt);
+    Vec2 momentum() const;
     void accelerate(double dt);
     void book(double dt);
     void book_energy(double dt);
     double kinetic_energy() const;
+    void pass(std::uint32_t cell, double heat, Vec2 impulse);
     void correct_fields(double dt);
     void level();
     void measure();
@@ -97,10 +105,14 @@ class Fluid::Implementation {
     CellGrid grid_;
     Evaluation evaluation_;
     Pressure pressure_;
+    std::optional<paper::Rates> paper_; ///< in the paper's formulation alone
     WallEstimate wall_estimate_;
     Closure closure_;
     Hydrostatics hydrostatics_;
     bool heat_ = false, buoyant_ = false;
+    bool forced_ = false;               ///< by a body force of the configuration
+    bool walls_change_ = false;         ///< their values, in time
+    Vec2 initial_momentum_;             ///< N s/m at t = 0
     double initial_heat_ = 0;           ///< J/m at t = 0
     double initial_kinetic_energy_ = 0; ///< J/m
     double speed_ = 0;                  ///< largest, m/s
@@ -125,6 +137,7 @@ class Fluid::Implementation {
     std::vector<Lanes> means_;             ///< by chunk and compartment: p, T, x, y
     std::vector<double> compartment_size_; ///< particles of each
     std::vector<double> passed_heat_;      ///< by compartment, in one step
+    std::vector<Vec2> given_force_;        ///< m/s2, by particle; only where there is one
     std::vector<double> wall_heat_, interface_heat_;
     std::vector<Vec2> interface_position_, interface_velocity_, interface_acceleration_;
     std::vector<double> interface_temperature_;

@@ -57,8 +57,6 @@ void Fluid::Implementation::fill() {
     for (std::size_t i = 0; i < places.size(); ++i) {
         particles.x[i] = places[i].x.x;
         particles.y[i] = places[i].x.y;
-        particles.fields[i] = {
-            config.initial_velocity.x, config.initial_velocity.y, 0, config.initial_temperature};
         particles.identity[i] = static_cast<std::uint32_t>(i);
         particles.compartment[i] = 0;
     }
@@ -66,6 +64,10 @@ void Fluid::Implementation::fill() {
     disturb();
     if (!fits) {
         relax();
+    }
+    for (std::size_t a = 0; a < particles.size(); ++a) {
+        const Vec2 x = particles.position(a), v = config.initial_velocity(x, 0);
+        particles.fields[a] = {v.x, v.y, 0, config.initial_temperature(x, 0)};
     }
     find_compartments();
 }

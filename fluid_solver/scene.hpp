@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -14,12 +15,50 @@
 
 namespace duet::fluid {
 
+/// A number, or a function of place (m) and time (s).
+class Function {
+  public:
+    Function(double number = 0) : number_(number) {}
+    /// `changes`: it depends on time too.
+    Function(std::function<double(double x, double y, double t)> function, bool changes)
+        : function_(std::move(function)), changes_(changes) {}
+
+    double operator()(Vec2 place, double time) const {
+        return function_ ? function_(place.x, place.y, time) : number_;
+    }
+    bool is_number() const { return !function_; }
+    bool changes() const { return changes_; }
+
+  private:
+    double number_ = 0;
+    std::function<double(double, double, double)> function_;
+    bool changes_ = false;
+};
+
+struct VectorFunction {
+    Function x, y;
+
+    Vec2 operator()(Vec2 place, double time) const { return {x(place, time), y(place, time)}; }
+    bool is_number() const { return x.is_number() && y.is_number(); }
+    bool changes() const { return x.changes() || y.changes(); }
+};
+
+/// Turning about a point.
+struct Rotation {
+    Vec2 centre;   ///< m
+    Function rate; ///< rad/s, counter-clockwise
+};
+
 /// What differs on a part of the cavity's boundary; all else is fixed, no-slip and adiabatic.
 struct Wall {
     std::string name;
-    Vec2 from, to; ///< every side of the region on the line between them belongs to this wall
-    std::optional<double> temperature; ///< K; adiabatic without it
-    Vec2 velocity;                     ///< m/s, along the wall
+    Vec2 from = {}, to = {}; ///< every side on the line between them belongs to this wall
+    std::optional<Function> temperature = {}; ///< K; without it the heat flux is known
+    VectorFunction velocity = {};             ///< m/s; its part along the wall counts
+    std::optional<Rotation> rotation = {};    ///< added to the velocity
+    Function heat_flux = {};                  ///< W/m2, into the fluid
+    std::optional<std::size_t> around =
+        {}; ///< instead of from and to: 0 the region, k the k-th hole
 };
 
 enum class PressureLevel {
@@ -27,19 +66,27 @@ enum class PressureLevel {
     free       ///< compression itself is the physics
 };
 
+enum class Formulation {
+    consistent, ///< exact for linear and quadratic fields (docs/theory-fluid.md)
+    paper       ///< the source paper's sums, the baseline
+};
+
 /// The fluid's part of a scene.
 struct Config {
-    double spacing = 0;               ///< m, between neighbouring particles
-    std::vector<Vec2> region;         ///< corners of the cavity, in order round it (either way)
-    double density = 1;               ///< kg/m3
-    double kinematic_viscosity = 0;   ///< m2/s
-    double heat_capacity = 1;         ///< J/(kg K)
-    double conductivity = 0;          ///< W/(m K)
-    double thermal_expansion = 0;     ///< 1/K
-    double reference_temperature = 0; ///< K, where the buoyancy vanishes
-    double initial_temperature = 0;   ///< K
-    Vec2 initial_velocity;            ///< m/s
-    Vec2 gravity;                     ///< m/s2
+    Formulation formulation = Formulation::consistent;
+    double spacing = 0;                   ///< m, between neighbouring particles
+    std::vector<Vec2> region;             ///< corners of the cavity, in order round it (either way)
+    std::vector<std::vector<Vec2>> holes; ///< corners of what is cut out of it, likewise
+    double density = 1;                   ///< kg/m3
+    double kinematic_viscosity = 0;       ///< m2/s
+    double heat_capacity = 1;             ///< J/(kg K)
+    double conductivity = 0;              ///< W/(m K)
+    double thermal_expansion = 0;         ///< 1/K
+    double reference_temperature = 0;     ///< K, where the buoyancy vanishes
+    Function initial_temperature;         ///< K
+    VectorFunction initial_velocity;      ///< m/s
+    Vec2 gravity;                         ///< m/s2
+    VectorFunction body_force;            ///< m/s2, beside the buoyancy
     std::vector<Wall> walls;
     PressureLevel pressure_level = PressureLevel::zero_mean;
     double sound_speed = 0; ///< m/s; 0 adapts it to the flow
@@ -86,9 +133,12 @@ struct Ledger {
     double heat_from_interface = 0;    ///< J/m
     double heat_from_walls = 0;        ///< J/m
     Vec2 impulse_from_interface;       ///< N s/m
+    Vec2 impulse_from_walls;           ///< N s/m
+    Vec2 impulse_from_body_force;      ///< N s/m, buoyancy included
+    Vec2 momentum;                     ///< N s/m, relative to the start
     double work_from_interface = 0;    ///< J/m
     double work_from_walls = 0;        ///< J/m
-    double buoyancy_work = 0;          ///< J/m
+    double buoyancy_work = 0;          ///< J/m, that of a given body force included
     double viscous_loss = 0;           ///< J/m, 2 mu D:D over fluid and time
     double kinetic_energy = 0;         ///< J/m
     double mechanical_residual = 0;    ///< J/m, kinetic energy gained beyond what the four explain
@@ -114,6 +164,7 @@ struct WallReport {
     double heat_flow = 0; ///< W/m, into the fluid, mean over the last window
     double heat = 0;      ///< J/m, into the fluid since the start
     Vec2 force;           ///< N/m, on the wall, mean over the last window
+    double torque = 0;    ///< N, on the wall about the origin, mean over the last window
 };
 
 /// All particles in the order of their identity (constant through a run).

@@ -9,7 +9,7 @@ namespace duet::fluid {
 
 namespace {
 
-constexpr std::uint64_t state_mark = 0x3144554c46544455; // layout of the bytes below
+constexpr std::uint64_t state_mark = 0x3244554c46544455; // layout of the bytes below
 
 class Writer {
   public:
@@ -94,6 +94,7 @@ void Fluid::Implementation::transfer(Archive& archive, Self& self) {
     archive(self.sound_speed_);
     archive(self.initial_heat_);
     archive(self.initial_kinetic_energy_);
+    archive(self.initial_momentum_);
     archive(self.heat_);
     archive(self.totals_);
     archive(self.mark_);
@@ -101,6 +102,7 @@ void Fluid::Implementation::transfer(Archive& archive, Self& self) {
         archive(wall.heat_flow);
         archive(wall.heat);
         archive(wall.force);
+        archive(wall.torque);
     }
 }
 
@@ -121,6 +123,7 @@ void Fluid::Implementation::restore(const std::string& state) {
     }
     transfer(reader, *this);
     reader.end();
+    boundary_.set_walls(time);
     put_interface();
 }
 

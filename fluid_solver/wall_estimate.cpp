@@ -61,6 +61,17 @@ double WallEstimate::turn_of_wall(const Boundary& boundary, std::uint32_t cell) 
     return distance > 0 ? dot(after.velocity - before.velocity, cells[cell].normal) / distance : 0;
 }
 
+namespace {
+
+/// Of the temperature at the middle of a cell whose heat flux is known.
+double known_slope(const Boundary& boundary, const WallCell& cell) {
+    const Segment& s = boundary.segments()[cell.segment];
+    return (1 - cell.centre) * boundary.temperature(s.node_a)
+           + cell.centre * boundary.temperature(s.node_b);
+}
+
+} // namespace
+
 /// With w = 1 - d/(1.5 dx): flux k sum w d (T_w - T_a) / sum w d^2, the viscous traction likewise
 /// from the velocity; the pressure is extrapolated with its known slope rho (b - a_wall).n across
 /// the wall and its gradient along the wall. Along the wall (grad u + grad u^T).n is du_t/dn +
@@ -70,7 +81,8 @@ void WallEstimate::run(const Boundary& boundary,
                        const Evaluation& evaluation,
                        const Particles& particles,
                        const Hydrostatics& hydrostatics,
-                       const WallMaterial& material) {
+                       const WallMaterial& material,
+                       std::span<const Vec2> body_force) {
     sums_.assign(boundary.cells().size(), {});
     for (const auto& chunk : evaluation.samples) {
         for (const WallSample& sample : chunk) {
@@ -80,7 +92,8 @@ void WallEstimate::run(const Boundary& boundary,
             const std::size_t a = sample.particle;
             const std::uint16_t compartment = particles.compartment[a];
             const double p = f.p + hydrostatics.pressure(particles.position(a), compartment);
-            const double across = dot(hydrostatics.force(f.T), n) - sample.acceleration;
+            const Vec2 extra = body_force.empty() ? Vec2{} : body_force[a];
+            const double across = dot(hydrostatics.force(f.T) + extra, n) - sample.acceleration;
             const Vec2 gradient = Vec2{evaluation.slope_x[a].p, evaluation.slope_y[a].p}
                                   + hydrostatics.gradient(compartment);
             const double along = dot(gradient, {n.y, -n.x}); // in the direction of travel
@@ -106,13 +119,13 @@ void WallEstimate::run(const Boundary& boundary,
         const WallCell& cell = boundary.cells()[c];
         const double steepness = 1 / s.wdd;
         const Vec2 slope{steepness * s.wd[0], steepness * s.wd[1]}; // of the velocity, towards n
-        const Vec2 shear = slope - dot(slope, cell.normal) * cell.normal;
+        const Vec2 tangent{cell.normal.y, -cell.normal.x};          // in the direction of travel
+        const double shear = dot(slope, tangent) + turn_of_wall(boundary, c);
         loads_[c].compartment = s.compartment;
-        loads_[c].heat_flux = cell.heated ? material.conductivity * steepness * s.wd[3] : 0;
-        const Vec2 tangent{cell.normal.y, -cell.normal.x};
-        const Vec2 turning = turn_of_wall(boundary, c) * tangent;
+        const double slope_T = cell.heated ? steepness * s.wd[3] : known_slope(boundary, cell);
+        loads_[c].heat_flux = material.conductivity * slope_T;
         loads_[c].traction =
-            (s.wp / s.w) * cell.normal - material.dynamic_viscosity * (shear + turning);
+            (s.wp / s.w) * cell.normal - (material.dynamic_viscosity * shear) * tangent;
     }
 }
 

@@ -9,6 +9,7 @@
 #include "fluid_solver/particles.hpp"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace duet::fluid {
@@ -32,11 +33,13 @@ class WallEstimate {
     explicit WallEstimate(double spacing) : spacing_(spacing) {}
 
     /// Loads of all wall cells, from the samples of the last evaluation and the present fields.
+    /// `body_force` by particle, m/s2, beside the buoyancy; empty without one.
     void run(const Boundary& boundary,
              const Evaluation& evaluation,
              const Particles& particles,
              const Hydrostatics& hydrostatics,
-             const WallMaterial& material);
+             const WallMaterial& material,
+             std::span<const Vec2> body_force);
 
     const std::vector<WallLoad>& loads() const { return loads_; } ///< by wall cell
 

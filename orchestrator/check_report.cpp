@@ -70,8 +70,10 @@ double solid_area(const v1::Scene& scene) {
 
 double particles_of(const v1::Scene& scene) {
     const auto& fluid = scene.fluid();
-    const Polygon region(fluid.region().begin(), fluid.region().end());
-    return (area(region) - solid_area(scene)) / (fluid.spacing() * fluid.spacing());
+    double room = area(outline(fluid)) - solid_area(scene);
+    for (const v1::Hole& hole : fluid.hole())
+        room -= area(outline(hole));
+    return room / (fluid.spacing() * fluid.spacing());
 }
 
 /// The values that a function is known to take; a formula counts as two different ones.
@@ -84,6 +86,36 @@ void add_values(const v1::Function& function, std::vector<double>& all) {
         all.push_back(function.number());
 }
 
+double largest(const v1::VectorFunction& vector) {
+    std::vector<double> x = {0}, y = {0};
+    add_values(vector.x(), x);
+    add_values(vector.y(), y);
+    const auto by_size = [](double a, double b) { return std::abs(a) < std::abs(b); };
+    return std::hypot(*std::max_element(x.begin(), x.end(), by_size),
+                      *std::max_element(y.begin(), y.end(), by_size));
+}
+
+/// In a cavity of this extent.
+double wall_speed(const v1::Wall& wall, double extent) {
+    std::vector<double> rates = {0};
+    if (wall.has_rotation())
+        add_values(wall.rotation().rate(), rates);
+    const auto [low, high] = std::minmax_element(rates.begin(), rates.end());
+    return largest(wall.velocity()) + std::max(*high, -*low) * extent / 2;
+}
+
+std::string heat_condition(const v1::Wall& wall) {
+    const auto text = [](const v1::Function& f, const std::string& unit) {
+        return f.has_number()  ? number_text(f.number()) + unit
+               : f.has_table() ? "a table in time," + unit
+                               : f.formula() + unit;
+    };
+    if (wall.has_temperature())
+        return text(wall.temperature(), " K");
+    const v1::Function& flux = wall.heat_flux();
+    return flux.has_number() && flux.number() == 0 ? "adiabatic" : text(flux, " W/m2");
+}
+
 /// Every temperature of the scene; all equal means that no heat flows.
 std::vector<double> temperatures(const v1::Scene& scene) {
     std::vector<double> all;
@@ -91,7 +123,7 @@ std::vector<double> temperatures(const v1::Scene& scene) {
         add_values(scene.fluid().initial_temperature(), all);
     for (const v1::Wall& wall : scene.fluid().wall())
         if (wall.has_temperature())
-            all.push_back(wall.temperature());
+            add_values(wall.temperature(), all);
     for (const v1::Body& body : scene.solid().body()) {
         add_values(body.initial_temperature(), all);
         for (const v1::Boundary& boundary : body.boundary()) {
@@ -141,15 +173,15 @@ Estimate estimate(const v1::Scene& scene) {
     const v1::Fluid& fluid = scene.fluid();
     const double gravity = distance(point(0, 0), scene.gravity());
     out.buoyancy = out.heat && gravity > 0 && fluid.thermal_expansion() > 0;
-    const Polygon region(fluid.region().begin(), fluid.region().end());
+    const Polygon region = outline(fluid);
     // Free convection over the height of the cavity at a third of the free fall's speed.
     if (out.buoyancy)
         out.speed =
             std::sqrt(gravity * fluid.thermal_expansion() * out.temperature_range * extent(region))
             / 3;
-    out.speed = std::max(out.speed, distance(point(0, 0), fluid.initial_velocity()));
+    out.speed = std::max(out.speed, largest(fluid.initial_velocity()));
     for (const v1::Wall& wall : fluid.wall())
-        out.speed = std::max(out.speed, distance(point(0, 0), wall.velocity()));
+        out.speed = std::max(out.speed, wall_speed(wall, extent(region)));
     const double slowest = std::max(
         fluid.kinematic_viscosity(),
         out.heat ? diffusivity(fluid.conductivity(), fluid.density(), fluid.heat_capacity()) : 0);
@@ -176,9 +208,11 @@ void describe_fluid(const v1::Scene& scene, const Estimate& e, std::string& out)
                          : "left out (no gravity or no expansion)")
            + "\n";
     for (const v1::Wall& wall : fluid.wall())
-        out += "        wall '" + wall.name() + "': "
-               + (wall.has_temperature() ? number_text(wall.temperature()) + " K" : "adiabatic")
-               + (distance(point(0, 0), wall.velocity()) > 0 ? ", moving\n" : "\n");
+        out += "        wall '" + wall.name() + "': " + heat_condition(wall)
+               + (wall_speed(wall, extent(outline(fluid))) > 0 ? ", moving\n" : "\n");
+    for (const v1::Hole& hole : fluid.hole())
+        out +=
+            "        hole '" + hole.name() + "' of " + number_text(area(outline(hole))) + " m2\n";
     out += "        all other walls: fixed, no-slip, adiabatic\n";
 }
 

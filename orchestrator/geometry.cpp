@@ -63,6 +63,29 @@ double area(const Polygon& polygon) {
     return std::abs(twice) / 2;
 }
 
+Polygon corners(const v1::Disc& disc) {
+    constexpr int count = 720;
+    Polygon polygon;
+    for (int i = 0; i < count; ++i) {
+        const double phi = 2 * std::acos(-1.0) * i / count;
+        polygon.push_back(point(disc.centre().x() + disc.radius() * std::cos(phi),
+                                disc.centre().y() + disc.radius() * std::sin(phi)));
+    }
+    return polygon;
+}
+
+Polygon outline(const v1::Fluid& fluid) {
+    if (fluid.has_disc())
+        return corners(fluid.disc());
+    return {fluid.region().begin(), fluid.region().end()};
+}
+
+Polygon outline(const v1::Hole& hole) {
+    if (hole.has_disc())
+        return corners(hole.disc());
+    return {hole.corners().begin(), hole.corners().end()};
+}
+
 double extent(const Polygon& polygon) {
     const auto by_x = [](const Point& a, const Point& b) { return a.x() < b.x(); };
     const auto by_y = [](const Point& a, const Point& b) { return a.y() < b.y(); };

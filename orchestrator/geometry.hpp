@@ -24,6 +24,13 @@ Polygon corners(const v1::Rectangle& rectangle);
 /// Enclosed area, positive for either sense of travel.
 double area(const Polygon& polygon);
 
+/// Corners of a fine polygon in place of a circle.
+Polygon corners(const v1::Disc& disc);
+
+/// The cavity's boundary, and that of a hole in it.
+Polygon outline(const v1::Fluid& fluid);
+Polygon outline(const v1::Hole& hole);
+
 /// The larger extent along x or y.
 double extent(const Polygon& polygon);
 

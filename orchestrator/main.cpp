@@ -6,12 +6,14 @@
 #include "orchestrator/run.hpp"
 #include "orchestrator/scene_check.hpp"
 #include "orchestrator/summary.hpp"
+#include "orchestrator/sweep.hpp"
 #include "orchestrator/verify.hpp"
 
 #include <CLI/CLI.hpp>
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 
@@ -91,6 +93,46 @@ int verify(const Arguments& arguments) {
     return all_pass(verdicts) ? 0 : 1;
 }
 
+/// Runs every variant through the same path as `verify`, and rewrites the table after each, so that
+/// what is done is kept whatever comes.
+int sweep(Arguments& arguments) {
+    const std::vector<Variant> variants = variants_of(arguments.overrides);
+    std::vector<Case> cases; // all are checked before the first one runs
+    for (const Variant& variant : variants) {
+        arguments.overrides = variant.overrides;
+        cases.push_back(checked_case(arguments));
+        if (cases.back().scene.check_size() == 0)
+            throw std::runtime_error("the case " + cases.back().file.string()
+                                     + " holds no [[check]] to measure its error");
+    }
+    const std::filesystem::path folder = arguments.run.output.empty()
+                                             ? "runs/sweep-" + cases[0].name
+                                             : arguments.run.output.string();
+    std::filesystem::create_directories(folder);
+    std::vector<Trial> trials;
+    int status = 0;
+    for (std::size_t i = 0; i < variants.size(); ++i) {
+        arguments.run.output = folder / std::to_string(i + 1);
+        Trial& trial = trials.emplace_back(Trial{variants[i], {}, {}});
+        trial.result = run_case(cases[i], arguments.run);
+        say_ending(trial.result);
+        if (trial.result.ended == Ended::interrupted)
+            return exit_status(trial.result);
+        if (trial.result.ended == Ended::finished)
+            trial.verdicts = judge(cases[i], trial.result);
+        else
+            status = 1;
+        std::ofstream(folder / "sweep.csv") << sweep_csv(trials);
+        std::ofstream json(folder / "sweep.json");
+        if (!(json << sweep_json(cases[0], trials) << std::flush))
+            throw std::runtime_error("cannot write " + (folder / "sweep.json").string() + ": "
+                                     + std::strerror(errno));
+    }
+    std::cout << "\n"
+              << sweep_csv(trials) << "\nthe table is " << (folder / "sweep.csv").string() << "\n";
+    return status;
+}
+
 void add_case(CLI::App& command, Arguments& arguments) {
     command.add_option("CASE", arguments.where, "a folder with case.toml, or a file")->required();
     command
@@ -149,6 +191,12 @@ int main(int argc, char** argv) {
     verify_command.add_option("--json", arguments.json, "write the table as JSON too")
         ->type_name("FILE");
     verify_command.callback([&] { status = verify(arguments); });
+    CLI::App& sweep_command = *app.add_subcommand(
+        "sweep",
+        "run a case for every combination of listed values, --set fluid.spacing=[0.2, 0.1], and "
+        "tabulate errors and cost");
+    add_run(sweep_command, arguments);
+    sweep_command.callback([&] { status = sweep(arguments); });
     CLI::App& reference_command = *app.add_subcommand("reference", "print docs/case-file.md");
     reference_command.group("");
     reference_command.callback([] { std::cout << case_file_reference(); });
@@ -159,6 +207,9 @@ int main(int argc, char** argv) {
         return app.exit(error) == 0 ? 0 : wrong_usage;
     } catch (const CaseError& error) {
         std::cerr << error.what() << "\n";
+        return wrong_usage;
+    } catch (const std::invalid_argument& error) {
+        std::cerr << "duet: " << error.what() << "\n";
         return wrong_usage;
     } catch (const std::exception& error) {
         std::cerr << "duet: " << error.what() << "\n";

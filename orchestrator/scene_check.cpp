@@ -40,10 +40,17 @@ bool is_zero(const v1::VectorFunction& function) {
     return is_zero(function.x()) && is_zero(function.y());
 }
 
+bool on_boundary(const Polygon& polygon, const Point& p, double tolerance) {
+    for (std::size_t i = 0; i < polygon.size(); ++i)
+        if (on_piece(p, polygon[i], polygon[(i + 1) % polygon.size()], tolerance))
+            return true;
+    return false;
+}
+
 class Checker {
   public:
     explicit Checker(const Case& given) : case_(given), scene_(given.scene) {
-        region_.assign(scene_.fluid().region().begin(), scene_.fluid().region().end());
+        region_ = outline(scene_.fluid());
         double size = region_.empty() ? 0 : extent(region_);
         for (const v1::Body& body : scene_.solid().body())
             size = std::max({size,
@@ -75,6 +82,7 @@ class Checker {
 
   private:
     void check_fluid();
+    void check_hole(const v1::Hole& hole, const std::string& path);
     void check_wall(const v1::Wall& wall, const std::string& path);
     void check_bodies();
     void check_body(const v1::Body& body, const std::string& path);
@@ -148,6 +156,9 @@ class Checker {
 
 void Checker::check_fluid() {
     const std::string path = "fluid.region";
+    if (scene_.fluid().has_disc() == (scene_.fluid().region_size() > 0))
+        return problem("fluid",
+                       "[fluid] needs either 'region', the corners of the cavity, or 'disc'");
     if (const auto fault = polygon_fault(region_, tolerance_))
         return problem(path, "fluid.region is no simple polygon: " + *fault);
     if (area(region_) <= tolerance_ * extent(region_))
@@ -155,20 +166,57 @@ void Checker::check_fluid() {
     region_good_ = true;
     if (scene_.fluid().spacing() > extent(region_) / 2)
         problem("fluid.spacing", "fluid.spacing is more than half the extent of the region");
+    check_names("fluid.hole", scene_.fluid().hole());
+    for (int i = 0; i < scene_.fluid().hole_size(); ++i)
+        check_hole(scene_.fluid().hole(i), entry("fluid.hole", i));
     check_names("fluid.wall", scene_.fluid().wall());
     for (int i = 0; i < scene_.fluid().wall_size(); ++i)
         check_wall(scene_.fluid().wall(i), entry("fluid.wall", i));
 }
 
+void Checker::check_hole(const v1::Hole& hole, const std::string& path) {
+    if (hole.has_disc() == (hole.corners_size() > 0))
+        return problem(path, path + " needs either 'corners' or 'disc'");
+    if (hole.name() == "region")
+        problem(path + ".name", "the name 'region' stands for the cavity itself; take another");
+    const Polygon polygon = outline(hole);
+    if (const auto fault = polygon_fault(polygon, tolerance_))
+        return problem(path + ".corners", path + ".corners is no simple polygon: " + *fault);
+    const bool within = std::all_of(polygon.begin(), polygon.end(), [&](const Point& p) {
+        return inside(region_, p, tolerance_) && !on_boundary(region_, p, tolerance_);
+    });
+    if (!within)
+        problem(path,
+                "the hole '" + hole.name()
+                    + "' reaches the boundary of the cavity; move it inside, or give the region "
+                      "the corners of what is left");
+}
+
 void Checker::check_wall(const v1::Wall& wall, const std::string& path) {
+    if (wall.has_temperature()
+        && (!wall.heat_flux().has_number() || wall.heat_flux().number() != 0))
+        problem(path + ".temperature",
+                path + " prescribes a temperature and a heat flux; keep one of them");
+    if (wall.around().empty() == (wall.along_size() == 0))
+        return problem(path, path + " needs either 'along', two points, or 'around', a hole");
+    if (!wall.around().empty()) {
+        if (wall.around() != "region")
+            must_be_known(wall.around(), "hole", scene_.fluid().hole(), path + ".around");
+        return;
+    }
     const Point& a = wall.along(0);
     const Point& b = wall.along(1);
     if (distance(a, b) <= tolerance_)
         return problem(path + ".along", path + ".along needs two different points");
     int sides = 0;
-    for (std::size_t i = 0; i < region_.size(); ++i)
-        sides += on_piece(region_[i], a, b, tolerance_)
-                 && on_piece(region_[(i + 1) % region_.size()], a, b, tolerance_);
+    const auto count = [&](const Polygon& polygon) {
+        for (std::size_t i = 0; i < polygon.size(); ++i)
+            sides += on_piece(polygon[i], a, b, tolerance_)
+                     && on_piece(polygon[(i + 1) % polygon.size()], a, b, tolerance_);
+    };
+    count(region_);
+    for (const v1::Hole& hole : scene_.fluid().hole())
+        count(outline(hole));
     if (sides == 0)
         problem(path + ".along",
                 "no side of fluid.region lies between " + at_text(a) + " and " + at_text(b)
@@ -177,13 +225,14 @@ void Checker::check_wall(const v1::Wall& wall, const std::string& path) {
         const v1::Wall& other = scene_.fluid().wall(j);
         if (&other == &wall)
             break;
-        if (common_length(a, b, other.along(0), other.along(1), tolerance_) > tolerance_)
+        if (other.along_size() == 2
+            && common_length(a, b, other.along(0), other.along(1), tolerance_) > tolerance_)
             problem(path + ".along",
                     "the walls '" + other.name() + "' and '" + wall.name() + "' share a side");
     }
-    const double across =
-        (b.x() - a.x()) * wall.velocity().y() - (b.y() - a.y()) * wall.velocity().x();
-    const double speed = distance(point(0, 0), wall.velocity());
+    const Point velocity = point(wall.velocity().x().number(), wall.velocity().y().number());
+    const double across = (b.x() - a.x()) * velocity.y() - (b.y() - a.y()) * velocity.x();
+    const double speed = distance(point(0, 0), velocity);
     if (std::abs(across) > 1e-9 * speed * distance(a, b))
         problem(path + ".velocity", "a wall of a closed cavity can only move along itself");
 }
@@ -376,6 +425,9 @@ void Checker::check_place(const v1::Probe& probe, const Point& p, const std::str
         }
         if (region_good_ && !inside(region_, q, tolerance_))
             problem(path, "the point " + where + " lies outside fluid.region");
+        for (const v1::Hole& hole : scene_.fluid().hole())
+            if (inside(outline(hole), q, tolerance_) && !on_boundary(outline(hole), q, tolerance_))
+                problem(path, "the point " + where + " lies in the hole '" + hole.name() + "'");
         for (const v1::Body& body : scene_.solid().body())
             if (body.has_rectangle() && strictly_inside(body.rectangle(), q, tolerance_))
                 problem(path,

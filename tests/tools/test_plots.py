@@ -82,6 +82,23 @@ class Plots(unittest.TestCase):
         self.assertFalse(numpy.array_equal(without, by_case))
         self.assertTrue(numpy.array_equal(by_case, by_hand))
 
+    def test_sweep(self):
+        table = self.folder / "sweep.csv"
+        head = "fluid.spacing,fluid.formulation,error of nu; mean,error of v,cpu_seconds_fluid,steps_fluid,wall_seconds,ended,revision"
+        rows = ["0.2,paper,0.1,0.2,1,5,1,finished,x", "0.1,paper,0.05,0.1,4,9,4,finished,x",
+                "0.2,consistent,0.01,0.02,1,5,1,finished,x", "0.1,consistent,,,1,5,1,failed,x"]
+        table.write_text("\n".join([head, *rows]) + "\n")
+        both = self.folder / "both.png"
+        one = self.folder / "one.png"
+        for options in (("-o", both), ("--check", "nu", "-o", one)):
+            result = run("plot_sweep.py", table, *options)
+            self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertGreater(matplotlib.image.imread(both).shape[1], matplotlib.image.imread(one).shape[1])
+        self.assertIn("there is no check lift; there is nu; mean, v",
+                      self.sentence("plot_sweep.py", table, "--check", "lift"))
+        self.assertIn("is no table of duet sweep",
+                      self.sentence("plot_sweep.py", self.folder / "history.csv"))
+
     def test_errors_are_sentences(self):
         self.assertIn("has no field voltage; it has pressure, temperature, velocity_x",
                       self.sentence("plot_fields.py", self.folder, "--field", "voltage"))

@@ -72,8 +72,13 @@ inline void set_walls(Boundary& boundary, const Field& u, const Field& v, const 
     for (const Segment& s : boundary.segments()) {
         velocity[s.node_a] = {u(s.a), v(s.a)};
         velocity[s.node_b] = {u(s.b), v(s.b)};
-        temperature[s.node_a] = T(s.a);
-        temperature[s.node_b] = T(s.b);
+    }
+    for (const Face& face : boundary.faces()) { // else the nodes hold the slope, here none
+        for (std::uint32_t j = face.first; face.heated && j < face.first + face.segments; ++j) {
+            const Segment& s = boundary.segments()[j];
+            temperature[s.node_a] = T(s.a);
+            temperature[s.node_b] = T(s.b);
+        }
     }
     boundary.set_values(velocity, std::vector<Vec2>(nodes), temperature);
 }

@@ -110,8 +110,10 @@ TEST(CaseFile, EachKindOfFaultHasItsSentence) {
               "case.toml:10:1: fluid.seed must be a whole number, 0 or greater, not a number");
     EXPECT_EQ(with("seed = -1\n"),
               "case.toml:10:1: fluid.seed must be a whole number between 0 and 4294967295, not -1");
-    EXPECT_EQ(with("initial_velocity = [1]\n"),
-              "case.toml:10:1: fluid.initial_velocity must be a pair of numbers [x, y]");
+    EXPECT_EQ(
+        with("initial_velocity = [1]\n"),
+        "case.toml:10:1: fluid.initial_velocity must be a pair [x, y] of numbers, formulas or "
+        "tables in time, not an array");
     EXPECT_EQ(
         with("pressure_level = \"zero_means\"\n"),
         "case.toml:10:1: fluid.pressure_level must be zero_mean or free, not 'zero_means'; did "

@@ -139,6 +139,16 @@ TEST(SceneCheck, ProbeNamesAndPlaces) {
     EXPECT_EQ(problems(good, {"probe[0].mirror=2.5"}), "");
     expect_fault("probe[0].mirror=0.5", "the point [-1, 2] (the mirror image) lies outside");
     expect_fault("probe[0].line=[[1, 2], [2, 2]]", "not both");
+    expect_fault("fluid.disc={ centre = [2, 2], radius = 1 }", "either 'region', the corners");
+    expect_fault("fluid.hole=[{ name = 'h', corners = [[1, 2], [2, 2], [2, 5]] }]",
+                 "the hole 'h' reaches the boundary of the cavity");
+    expect_fault("fluid.hole=[{ name = 'h', disc = { centre = [2, 2], radius = 0.5 } }]",
+                 "the point [2, 2] lies in the hole 'h'");
+    expect_fault("fluid.hole=[{ name = 'h' }]", "fluid.hole[0] needs either 'corners' or 'disc'");
+    expect_fault("fluid.wall=[{ name = 'w', around = 'region', temperature = 1, heat_flux = 't' }]",
+                 "prescribes a temperature and a heat flux");
+    expect_fault("fluid.wall=[{ name = 'w', around = 'core' }]", "there is no hole 'core'");
+    expect_fault("fluid.wall=[{ name = 'w' }]", "needs either 'along', two points, or 'around'");
     expect_fault("probe[0].wall=\"lit\"", "there is no wall 'lit'; did you mean 'lid'?");
     expect_fault("probe[0].body=\"plate\"", "a probe of the fluid takes a wall");
     expect_fault("probe[0].name=\"a,b\"", "must be a word");
