@@ -14,7 +14,7 @@ int main() {
     config.conductivity = 1;
     config.thermal_expansion = 1;
     config.gravity = {0, -0.71e6};
-    config.reference_temperature = config.initial_temperature = 0.5;
+    config.initial_temperature = config.reference_temperature = 0.5;
     config.disorder = 0.1;
     config.walls = {{"hot", {0, 0}, {0, 1}, 1.0, {}}, {"cold", {1, 0}, {1, 1}, 0.0, {}}};
     Fluid fluid(config);
