@@ -18,7 +18,7 @@ struct Answer {
 Answer solve(std::uint32_t n, Smoothing smoothing, double young, double poisson, double force) {
     const std::clock_t start = std::clock();
     Body body(test::cook(n, smoothing, young, poisson, force));
-    body.find_equilibrium(1e-10);
+    body.find_equilibrium(1e-8);
     const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
     return {test::displacement_at(body, {48, 52}).y(),
             test::displacement_at(body, {48, 60}).y(),
