@@ -44,6 +44,10 @@ Gradient gradient_of(const std::array<std::uint32_t, slots>& node,
 
 } // namespace
 
+double PlaneTensor::principal(double side) const {
+    return 0.5 * (xx + yy) + side * std::hypot(0.5 * (xx - yy), xy);
+}
+
 double PlaneTensor::von_mises() const {
     return std::sqrt(0.5 * ((xx - yy) * (xx - yy) + (yy - zz) * (yy - zz) + (zz - xx) * (zz - xx))
                      + 3 * xy * xy);
@@ -342,11 +346,12 @@ PlaneTensor Elasticity::domain_stress(std::size_t k, std::span<const double> tem
             s.zz / jacobian};
 }
 
-std::vector<PlaneTensor> Elasticity::nodal_stress(std::span<const double> temperature) const {
+template <class OfDomain>
+std::vector<PlaneTensor> Elasticity::nodal_mean(const OfDomain& of_domain) const {
     std::vector<PlaneTensor> nodal(latent_.size());
     std::vector<double> area(latent_.size(), 0.0);
     for (std::size_t k = 0; k < domains_.size(); ++k) {
-        const PlaneTensor s = domain_stress(k, temperature);
+        const PlaneTensor s = of_domain(k);
         for (std::size_t i = 0; i < slots; ++i) {
             const std::uint32_t node = domains_.node[k][i];
             const double share = domains_.area[k] * domains_.weight[k][i];
@@ -364,6 +369,21 @@ std::vector<PlaneTensor> Elasticity::nodal_stress(std::span<const double> temper
                     nodal[i].zz / area[i]};
     }
     return nodal;
+}
+
+std::vector<PlaneTensor> Elasticity::nodal_stress(std::span<const double> temperature) const {
+    return nodal_mean([&](std::size_t k) { return domain_stress(k, temperature); });
+}
+
+/// E = (g + g^T + g^T g)/2, g = F - I of the smoothed motion.
+std::vector<PlaneTensor> Elasticity::nodal_strain() const {
+    return nodal_mean([&](std::size_t k) {
+        const Gradient g = gradient(k, displacement_.data());
+        return PlaneTensor{g.xx + 0.5 * (g.xx * g.xx + g.yx * g.yx),
+                           g.yy + 0.5 * (g.xy * g.xy + g.yy * g.yy),
+                           0.5 * (g.xy + g.yx + g.xx * g.xy + g.yx * g.yy),
+                           0};
+    });
 }
 
 } // namespace duet::solid

@@ -98,6 +98,8 @@ class Elasticity {
     PlaneTensor domain_stress(std::size_t domain, std::span<const double> temperature) const;
     /// Area-weighted mean of the domains round each node [N].
     std::vector<PlaneTensor> nodal_stress(std::span<const double> temperature) const;
+    /// Green-Lagrange strain at the nodes, likewise; of plane strain (zz left out).
+    std::vector<PlaneTensor> nodal_strain() const;
 
     template <class Visit>
     void visit_state(const Visit& visit) {
@@ -109,6 +111,8 @@ class Elasticity {
     }
 
   private:
+    template <class OfDomain>
+    std::vector<PlaneTensor> nodal_mean(const OfDomain& of_domain) const;
     const Law& law(std::size_t domain) const { return law_[domains_.part[domain]]; }
     Gradient gradient(std::size_t domain, const double* displacement) const;
     double mean(std::size_t domain, const double* nodal) const;

@@ -10,6 +10,8 @@ namespace duet::solid {
 struct PlaneTensor {
     double xx = 0, yy = 0, xy = 0, zz = 0;
     double von_mises() const;
+    /// Principal value in the plane: the larger for side = +1, the smaller for -1.
+    double principal(double side) const;
 };
 
 /// S = lambda tr(E) I + 2 mu E - beta (T - T0) I with traces over the plane (6), (9). Plane strain:

@@ -12,13 +12,16 @@ namespace duet::solid {
 
 namespace {
 
-using Stress = std::vector<PlaneTensor>; ///< of a body's nodes
+/// Stress and strain of a body's nodes.
+struct Nodal {
+    std::vector<PlaneTensor> stress, strain;
+};
 
 struct Quantity {
     const char* name;
     bool odd;       ///< changes sign in a vertical mirror
     bool of_stress; ///< a fixed body has none
-    double (*value)(const Body&, const Stress&, std::uint32_t node);
+    double (*value)(const Body&, const Nodal&, std::uint32_t node);
 };
 
 double displacement(const Body& body, std::uint32_t node, Eigen::Index d) {
@@ -30,43 +33,63 @@ constexpr Quantity fields[] = {
     {"temperature",
      false,
      false,
-     [](const Body& b, const Stress&, std::uint32_t i) { return b.temperature()[i]; }},
+     [](const Body& b, const Nodal&, std::uint32_t i) { return b.temperature()[i]; }},
     {"displacement_x",
      true,
      false,
-     [](const Body& b, const Stress&, std::uint32_t i) { return displacement(b, i, 0); }},
+     [](const Body& b, const Nodal&, std::uint32_t i) { return displacement(b, i, 0); }},
     {"displacement_y",
      false,
      false,
-     [](const Body& b, const Stress&, std::uint32_t i) { return displacement(b, i, 1); }},
+     [](const Body& b, const Nodal&, std::uint32_t i) { return displacement(b, i, 1); }},
     {"velocity_x",
      true,
      false,
-     [](const Body& b, const Stress&, std::uint32_t i) { return b.velocity()[2 * i]; }},
+     [](const Body& b, const Nodal&, std::uint32_t i) { return b.velocity()[2 * i]; }},
     {"velocity_y",
      false,
      false,
-     [](const Body& b, const Stress&, std::uint32_t i) { return b.velocity()[2 * i + 1]; }},
+     [](const Body& b, const Nodal&, std::uint32_t i) { return b.velocity()[2 * i + 1]; }},
     {"stress_xx",
      false,
      true,
-     [](const Body&, const Stress& s, std::uint32_t i) { return s[i].xx; }},
+     [](const Body&, const Nodal& s, std::uint32_t i) { return s.stress[i].xx; }},
     {"stress_yy",
      false,
      true,
-     [](const Body&, const Stress& s, std::uint32_t i) { return s[i].yy; }},
+     [](const Body&, const Nodal& s, std::uint32_t i) { return s.stress[i].yy; }},
     {"stress_xy",
      true,
      true,
-     [](const Body&, const Stress& s, std::uint32_t i) { return s[i].xy; }},
+     [](const Body&, const Nodal& s, std::uint32_t i) { return s.stress[i].xy; }},
     {"stress_zz",
      false,
      true,
-     [](const Body&, const Stress& s, std::uint32_t i) { return s[i].zz; }},
+     [](const Body&, const Nodal& s, std::uint32_t i) { return s.stress[i].zz; }},
     {"von_mises",
      false,
      true,
-     [](const Body&, const Stress& s, std::uint32_t i) { return s[i].von_mises(); }},
+     [](const Body&, const Nodal& s, std::uint32_t i) { return s.stress[i].von_mises(); }},
+    {"principal_stress_1",
+     false,
+     true,
+     [](const Body&, const Nodal& s, std::uint32_t i) { return s.stress[i].principal(+1); }},
+    {"principal_stress_2",
+     false,
+     true,
+     [](const Body&, const Nodal& s, std::uint32_t i) { return s.stress[i].principal(-1); }},
+    {"strain_xx",
+     false,
+     true,
+     [](const Body&, const Nodal& s, std::uint32_t i) { return s.strain[i].xx; }},
+    {"strain_yy",
+     false,
+     true,
+     [](const Body&, const Nodal& s, std::uint32_t i) { return s.strain[i].yy; }},
+    {"strain_xy",
+     true,
+     true,
+     [](const Body&, const Nodal& s, std::uint32_t i) { return s.strain[i].xy; }},
 };
 
 /// How the bodies' values make one.
@@ -83,6 +106,18 @@ double extreme(const Body& body, bool largest) {
     return largest ? *std::max_element(t.begin(), t.end()) : *std::min_element(t.begin(), t.end());
 }
 
+/// What holds a body's held nodes, d = 0: along x, 1: along y.
+double reaction(const Body& body, std::size_t d) {
+    double sum = 0;
+    if (body.mechanics()) {
+        const std::vector<double> force = body.mechanics()->reaction();
+        for (std::size_t c = d; c < force.size(); c += 2) {
+            sum += force[c];
+        }
+    }
+    return sum;
+}
+
 constexpr Integral integrals[] = {
     {"mean_temperature",
      Join::mean_by_capacity,
@@ -97,6 +132,8 @@ constexpr Integral integrals[] = {
     {"strain_energy",
      Join::sum,
      [](const Body& b) { return b.mechanics() ? b.mechanics()->strain_energy() : 0.0; }},
+    {"reaction_x", Join::sum, [](const Body& b) { return reaction(b, 0); }},
+    {"reaction_y", Join::sum, [](const Body& b) { return reaction(b, 1); }},
     {"area", Join::sum, [](const Body& b) { return b.area(); }},
 };
 
@@ -203,7 +240,7 @@ Probes::Probes(const v1::Scene& scene, const Solid& solid) {
 void Probes::take(const Solid& solid,
                   double time,
                   google::protobuf::RepeatedPtrField<v1::Sample>& samples) const {
-    std::vector<Stress> stress(solid.bodies().size()); // made when the first probe asks for it
+    std::vector<Nodal> tensors(solid.bodies().size()); // made when the first probe asks for it
     for (const Prepared& prepared : prepared_) {
         const v1::Probe& probe = prepared.probe;
         if (prepared.points.empty()) {
@@ -220,9 +257,10 @@ void Probes::take(const Solid& solid,
                 continue;
             }
             const Body& body = solid.bodies()[place->body];
-            Stress& nodal = stress[place->body];
-            if (field.of_stress && nodal.empty()) {
-                nodal = body.mechanics()->nodal_stress(body.temperature());
+            Nodal& nodal = tensors[place->body];
+            if (field.of_stress && nodal.stress.empty()) {
+                nodal.stress = body.mechanics()->nodal_stress(body.temperature());
+                nodal.strain = body.mechanics()->elasticity().nodal_strain();
             }
             double value = 0;
             for (std::size_t i = 0; i < 3; ++i) {

@@ -182,6 +182,43 @@ TEST_F(SolidParticipant, AProbeTakesTheDifferenceAlongALine) {
     EXPECT_NEAR(value(advance(0.01, 0, 0).sample(), "across"), 60, 1e-9);
 }
 
+TEST_F(SolidParticipant, AStretchedBodyTellsStressStrainAndReaction) {
+    v1::Body& body = *configure_.mutable_scene()->mutable_solid()->mutable_body(0);
+    body.set_motion(v1::Body::DEFORMABLE);
+    body.set_start(v1::Body::EQUILIBRIUM);
+    const auto side = [&](const char* curve) -> v1::Boundary& {
+        v1::Boundary& boundary = *body.add_boundary();
+        boundary.set_name(curve);
+        boundary.set_curve(curve);
+        return boundary;
+    };
+    side("left").set_fixed_x(true);
+    side("bottom").set_fixed_y(true);
+    side("right").mutable_traction()->mutable_x()->set_number(1e-4);
+    for (const char* quantity : {"stress_xx",
+                                 "principal_stress_1",
+                                 "principal_stress_2",
+                                 "strain_xx",
+                                 "strain_yy",
+                                 "strain_xy"}) {
+        v1::Probe& probe = add_probe(quantity, quantity);
+        probe.mutable_at()->set_x(0.93);
+        probe.mutable_at()->set_y(1.41);
+    }
+    add_probe("reaction_x", "reaction_x");
+    add_probe("reaction_y", "reaction_y");
+    configure();
+    const auto& sample = ready_.sample();
+    EXPECT_NEAR(value(sample, "stress_xx"), 1e-4, 1e-8); // Cauchy's, of second order in the strain
+    EXPECT_NEAR(value(sample, "principal_stress_1"), value(sample, "stress_xx"), 1e-12);
+    EXPECT_NEAR(value(sample, "principal_stress_2"), 0, 1e-8);
+    EXPECT_NEAR(value(sample, "strain_xx"), 1e-4 * (1 - 0.09) / 5, 1e-8);
+    EXPECT_NEAR(value(sample, "strain_yy"), -1e-4 * 0.3 * 1.3 / 5, 1e-8);
+    EXPECT_NEAR(value(sample, "strain_xy"), 0, 1e-12);
+    EXPECT_NEAR(value(sample, "reaction_x"), -1e-4, 1e-11);
+    EXPECT_NEAR(value(sample, "reaction_y"), 0, 1e-11);
+}
+
 TEST_F(SolidParticipant, ProbesTakeFieldsAndIntegrals) {
     add_body("beam", 2.5, v1::Body::DEFORMABLE).mutable_initial_temperature()->set_number(500);
     v1::Probe& point = add_probe("point", "temperature");
