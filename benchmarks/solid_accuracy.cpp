@@ -11,8 +11,8 @@ namespace {
 using namespace duet::solid;
 
 struct Answer {
-    double middle, corner; ///< m, deflection at (48, 52) and (48, 60)
-    double seconds;        ///< CPU, of mesh, domains and Newton's method
+    double deflection; ///< m, at (48, 52)
+    double seconds;    ///< CPU, of mesh, domains and Newton's method
 };
 
 Answer solve(std::uint32_t n, Smoothing smoothing, double young, double poisson, double force) {
@@ -20,9 +20,7 @@ Answer solve(std::uint32_t n, Smoothing smoothing, double young, double poisson,
     Body body(test::cook(n, smoothing, young, poisson, force));
     body.find_equilibrium(1e-8);
     const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-    return {test::displacement_at(body, {48, 52}).y(),
-            test::displacement_at(body, {48, 60}).y(),
-            seconds};
+    return {test::displacement_at(body, {48, 52}).y(), seconds};
 }
 
 } // namespace
@@ -42,11 +40,11 @@ int main() {
         std::printf("| %u x %u | %.2f %% | %.3f | %.2f %% | %.3f | %.1f %% | %.1f %% |\n",
                     n,
                     n,
-                    error(t3.middle / small, 21.52),
+                    error(t3.deflection / small, 21.52),
                     t3.seconds,
-                    error(edge.middle / small, 21.52),
+                    error(edge.deflection / small, 21.52),
                     edge.seconds,
-                    error(t3_stiff.corner / small, 7.69),
-                    error(edge_stiff.corner / small, 7.69));
+                    error(t3_stiff.deflection / small, 7.69),
+                    error(edge_stiff.deflection / small, 7.69));
     }
 }
