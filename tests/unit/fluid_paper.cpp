@@ -93,12 +93,11 @@ TEST(FluidPaper, SumsOverNeighboursAreThoseOverAllPairs) {
             density += rho * m / rho_b * dot(v, gradient);
             shift += 1 / (r2 * norm(d)) * d;
         }
-        // Neighbours are found in single precision.
-        EXPECT_NEAR(rates.acceleration[a].x, acceleration.x, 1e-4);
-        EXPECT_NEAR(rates.acceleration[a].y, acceleration.y, 1e-4);
-        EXPECT_NEAR(rates.heating[a], warming, 1e-4);
-        EXPECT_NEAR(rates.pressure_rate[a], c2 * density, 1e-4 * c2);
-        EXPECT_NEAR(rates.shift[a].x, shift.x, 1e-3 * 1 / (spacing * spacing));
+        EXPECT_NEAR(rates.acceleration[a].x, acceleration.x, 1e-9);
+        EXPECT_NEAR(rates.acceleration[a].y, acceleration.y, 1e-9);
+        EXPECT_NEAR(rates.heating[a], warming, 1e-9);
+        EXPECT_NEAR(rates.pressure_rate[a], c2 * density, 1e-9 * c2);
+        EXPECT_NEAR(rates.shift[a].x, shift.x, 1e-9 / (spacing * spacing));
     }
     EXPECT_GT(compared, 10);
 }
@@ -125,7 +124,7 @@ TEST(FluidPaper, HeatOfThePairSumsIsTheWalls) {
             given += transfer.heat_flow;
         }
     }
-    EXPECT_NEAR(gained, given, 1e-5 * std::abs(given)) << "single precision of the distances";
+    EXPECT_NEAR(gained, given, 1e-12 * std::abs(given));
     EXPECT_LT(given, -1) << "the fluid is warmer than its walls";
 }
 
