@@ -196,10 +196,10 @@ draw_histories() {
         -h | --help) return ;;
         esac
     done
-    [[ $folder ]] || folder=$(ls -1td runs/*/ 2>/dev/null | head -n 1)
+    [[ $folder ]] || folder=$(ls -1td runs/*/ 2>/dev/null | head -n 1) || return 0
     folder=${folder%/}
     if [[ -s $folder/probes.csv && $folder/probes.csv -nt $started ]] \
-        && "$root/tools/plot_probes.py" "$folder" --output "$folder/probes.png" 2>/dev/null; then
+        && "$root/tools/plot_probes.py" "$folder" --output "$folder/probes.png" 2>>"$folder/log.txt"; then
         echo "its histories, beside their references, are drawn in $folder/probes.png"
     fi
 }

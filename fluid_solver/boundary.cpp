@@ -26,12 +26,12 @@ Boundary::Boundary(const Config& config,
         add_loop(hole, true);
     }
     assign_walls();
-    Vec2 lower = config.region[0], upper = lower;
+    lower_ = upper_ = config.region[0];
     for (const Vec2 c : config.region) {
-        lower = {std::min(lower.x, c.x), std::min(lower.y, c.y)};
-        upper = {std::max(upper.x, c.x), std::max(upper.y, c.y)};
+        lower_ = {std::min(lower_.x, c.x), std::min(lower_.y, c.y)};
+        upper_ = {std::max(upper_.x, c.x), std::max(upper_.y, c.y)};
     }
-    grid_ = CellGrid(lower, upper, support_);
+    grid_ = CellGrid(lower_, upper_, support_);
     for (const Chain& chain : chains_) {
         interface_segments_ += chain.segments();
     }
@@ -42,6 +42,15 @@ Boundary::Boundary(const Config& config,
 void Boundary::place(const std::vector<Vec2>& positions) {
     if (positions == position_) {
         return;
+    }
+    for (const Vec2 x : positions) {
+        const bool near = x.x >= lower_.x - support_ && x.x <= upper_.x + support_
+                          && x.y >= lower_.y - support_ && x.y <= upper_.y + support_;
+        if (!near) { // false for NaN
+            throw Diverged("the interface has left the fluid's region at (" + std::to_string(x.x)
+                           + ", " + std::to_string(x.y)
+                           + "); shorten time.window, or look at what moves the solid");
+        }
     }
     position_ = positions;
     build();
@@ -218,6 +227,13 @@ void Boundary::set_values(std::span<const Vec2> velocity,
     std::copy(velocity.begin(), velocity.end(), velocity_.begin());
     std::copy(acceleration.begin(), acceleration.end(), acceleration_.begin());
     std::copy(temperature.begin(), temperature.end(), temperature_.begin());
+    for (const Chain& chain : chains_) {
+        for (const std::uint32_t node : chain.nodes) {
+            if (chain.insulated) { // there the fourth value is the slope along the normal
+                temperature_[node] = 0;
+            }
+        }
+    }
 }
 
 /// The foot point lies on the nearest face of a run. Before a joint that juts out it is the joint,

@@ -151,6 +151,7 @@ class Boundary {
 
     // walls.cpp
     void add_loop(std::vector<Vec2> corners, bool hole);
+    void check_turning(const Wall& wall, const Side& side) const;
     void assign_walls();
     void add_walls();
     void keep(const std::vector<Side>& loop, double from, double to);
@@ -185,6 +186,7 @@ class Boundary {
         acceleration_; ///< by node: interface first, then those of each side
     std::vector<double> temperature_;
 
+    Vec2 lower_, upper_; ///< corners of the box round the region
     CellGrid grid_;
     std::vector<std::uint32_t> candidate_start_, candidate_, cursor_;
 };

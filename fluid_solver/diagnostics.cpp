@@ -27,7 +27,7 @@ Ledger Fluid::Implementation::ledger() const {
     l.kinetic_energy = kinetic_energy();
     l.momentum = momentum() - initial_momentum_;
     l.mechanical_residual = l.kinetic_energy - initial_kinetic_energy_ - l.work_from_interface
-                            - l.work_from_walls - l.buoyancy_work + l.viscous_loss;
+                            - l.work_from_walls - l.body_force_work + l.viscous_loss;
     const double since = time - mark_.time;
     if (since > 0) {
         l.force_on_solids = (1 / since) * (mark_.impulse - l.impulse_from_interface);
@@ -168,11 +168,11 @@ Snapshot Fluid::Implementation::snapshot() const {
 }
 
 std::vector<Phase> Fluid::Implementation::phases() const {
-    return {{"move", phase_seconds_[0]},
-            {"sort", phase_seconds_[1]},
-            {"operators", phase_seconds_[2]},
-            {"inner steps", phase_seconds_[3]},
-            {"walls and closure", phase_seconds_[4]}};
+    return {{"move", phase_seconds_[moving]},
+            {"sort", phase_seconds_[sorting]},
+            {"operators", phase_seconds_[evaluating]},
+            {"inner steps", phase_seconds_[inner_steps]},
+            {"walls and closure", phase_seconds_[walls_and_closure]}};
 }
 
 std::vector<std::string> Fluid::Implementation::model() const {
@@ -180,9 +180,11 @@ std::vector<std::string> Fluid::Implementation::model() const {
     size << particles.size() << " fluid particles of " << volume << " m2 at a spacing of "
          << config.spacing << " m in " << compartments
          << (compartments == 1 ? " compartment" : " compartments");
-    physics << "incompressible flow by artificial compressibility, "
+    physics << (paper_ ? "weakly compressible flow, "
+                       : "incompressible flow by artificial compressibility, ")
             << (heat_ ? "heat" : "no heat (one temperature)") << ", "
-            << (buoyant_ ? "Boussinesq buoyancy" : "no buoyancy");
+            << (buoyant_ ? "Boussinesq buoyancy" : "no buoyancy")
+            << (forced_ ? ", body force" : "");
     return {size.str(),
             physics.str(),
             paper_ ? "formulation: the source paper's, cubic spline, h = 1.2 spacings"

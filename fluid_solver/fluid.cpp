@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 
 namespace duet::fluid {
 
@@ -16,22 +15,7 @@ constexpr double courant_diffusion = 0.15;  ///< of dx^2/max(nu, alpha), outer s
 constexpr double courant_sound = 1.65;      ///< of dx/c, inner step (stable to 2.0)
 constexpr double courant_paper = 0.3;       ///< of dx/(c + U), the paper's single step
 constexpr double step_tolerance = 1.05;     ///< over the outer limit rather than twice the steps
-constexpr double follow_acceleration = 0.1; ///< share of a window\'s acceleration taken up at once
-
-enum PhaseIndex { moving, sorting, evaluating, inner_steps, walls_and_closure };
-
-/// Adds the CPU time of its own life, all threads together, to a phase.
-class Stamp {
-  public:
-    explicit Stamp(double& seconds) : seconds_(seconds) {}
-    ~Stamp() { seconds_ += static_cast<double>(std::clock() - start_) / CLOCKS_PER_SEC; }
-    Stamp(const Stamp&) = delete;
-    Stamp& operator=(const Stamp&) = delete;
-
-  private:
-    double& seconds_;
-    std::clock_t start_ = std::clock();
-};
+constexpr double follow_acceleration = 0.1; ///< share of a window's acceleration taken up at once
 
 /// The configuration itself, if it can be modelled.
 const Config& checked(const Config& c) {
@@ -40,6 +24,15 @@ const Config& checked(const Config& c) {
     }
     if (c.region.size() < 3) {
         throw SceneError("the fluid's region needs at least three corners");
+    }
+    const auto [left, right] = std::minmax_element(
+        c.region.begin(), c.region.end(), [](Vec2 p, Vec2 q) { return p.x < q.x; });
+    const auto [low, high] = std::minmax_element(
+        c.region.begin(), c.region.end(), [](Vec2 p, Vec2 q) { return p.y < q.y; });
+    constexpr double most = 2e8; // some 100 GB
+    if ((right->x - left->x) * (high->y - low->y) > most * c.spacing * c.spacing) {
+        throw SceneError("a spacing of " + std::to_string(c.spacing)
+                         + " m makes more than 2e8 fluid particles; raise fluid.spacing");
     }
     return c;
 }
@@ -59,7 +52,6 @@ Fluid::Implementation::Implementation(const Config& c,
     if (config.formulation == Formulation::paper) {
         paper_.emplace(config.spacing, config.threads);
     }
-    heat_ = config.conductivity > 0 && boundary_.heated();
     buoyant_ = config.thermal_expansion != 0 && norm(config.gravity) > 0;
     forced_ = !config.body_force.is_number() || norm(config.body_force({}, 0)) > 0;
     walls_change_ = std::any_of(config.walls.begin(), config.walls.end(), [](const Wall& wall) {
@@ -89,6 +81,7 @@ void Fluid::Implementation::start() {
             && (boundary_.heated()
                 || std::any_of(particles.fields.begin(), particles.fields.end(), differs));
     level();
+    take_body_force(time);
     sound_speed_ = 0; // the old one says nothing of the new fields
     measure();
     adapt_sound_speed();
@@ -178,21 +171,13 @@ void Fluid::Implementation::step(double dt, double elapsed, const Motion& motion
     if (paper_) {
         return paper_step(dt, elapsed, motion);
     }
-    {
-        const Stamp stamp(phase_seconds_[moving]);
-        move(0.5 * dt, false);
-        place_interface(elapsed + 0.5 * dt, motion);
-        keep_inside();
-    }
-    {
-        const Stamp stamp(phase_seconds_[sorting]);
-        particles.sort(grid_);
-    }
+    begin_step(dt, elapsed, motion);
     {
         const Stamp stamp(phase_seconds_[evaluating]);
         evaluate(dt);
-        if (forced_) {
-            add_body_force(time + elapsed + 0.5 * dt, dt);
+        take_body_force(time + elapsed + 0.5 * dt);
+        for (std::size_t a = 0; a < given_force_.size(); ++a) {
+            evaluation_.add_force(a, given_force_[a]);
         }
     }
     {
@@ -205,15 +190,30 @@ void Fluid::Implementation::step(double dt, double elapsed, const Motion& motion
         book_energy(dt);
         correct_fields(dt);
     }
+    finish_step(dt, elapsed, motion);
+}
+
+/// To the middle of the step: what all operators see.
+void Fluid::Implementation::begin_step(double dt, double elapsed, const Motion& motion) {
     {
         const Stamp stamp(phase_seconds_[moving]);
-        move(0.5 * dt, true);
-        place_interface(elapsed + dt, motion);
+        move(0.5 * dt, false);
+        place_interface(elapsed + 0.5 * dt, motion);
         keep_inside();
-        level();
-        measure();
-        adapt_sound_speed();
     }
+    const Stamp stamp(phase_seconds_[sorting]);
+    particles.sort(grid_);
+}
+
+/// To its end, with the shift.
+void Fluid::Implementation::finish_step(double dt, double elapsed, const Motion& motion) {
+    const Stamp stamp(phase_seconds_[moving]);
+    move(0.5 * dt, true);
+    place_interface(elapsed + dt, motion);
+    keep_inside();
+    level();
+    measure();
+    adapt_sound_speed();
 }
 
 /// The acceleration that the pressure's slope at the interface takes follows the windows' own
@@ -314,16 +314,28 @@ void Fluid::Implementation::evaluate(double dt) {
                      heat_});
 }
 
-void Fluid::Implementation::add_body_force(double now, double dt) {
-    given_force_.resize(particles.size());
-    Vec2 impulse;
-    for (std::size_t a = 0; a < particles.size(); ++a) {
-        const Vec2 b = config.body_force(particles.position(a), now);
-        given_force_[a] = b;
-        evaluation_.add_force(a, b);
-        impulse += b;
+/// Serial: a formula of the scene is evaluated by one thread at a time.
+void Fluid::Implementation::take_body_force(double now) {
+    given_force_.resize(forced_ ? particles.size() : 0);
+    for (std::size_t a = 0; a < given_force_.size(); ++a) {
+        given_force_[a] = config.body_force(particles.position(a), now);
     }
-    totals_.impulse_from_body_force += (dt * config.density * volume) * impulse;
+}
+
+/// m/s2 on a particle: buoyancy and the given force.
+Vec2 Fluid::Implementation::body_force(std::size_t a) const {
+    return (buoyant_ ? hydrostatics_.force(particles.fields[a].T) : Vec2{})
+           + (forced_ ? given_force_[a] : Vec2{});
+}
+
+/// Books the impulse of the body forces in this step.
+void Fluid::Implementation::book_body_force(double dt) {
+    if (buoyant_ || forced_) {
+        totals_.impulse_from_body_force +=
+            (dt * config.density * volume)
+            * Vec2{sum([&](std::size_t a) { return body_force(a).x; }),
+                   sum([&](std::size_t a) { return body_force(a).y; })};
+    }
 }
 
 Vec2 Fluid::Implementation::momentum() const {
@@ -357,12 +369,7 @@ void Fluid::Implementation::book(double dt) {
         hydrostatics_,
         {config.conductivity, config.density * config.kinematic_viscosity, config.density},
         given_force_);
-    if (buoyant_) {
-        const double temperature = sum([&](std::size_t a) { return particles.fields[a].T; });
-        const auto count = static_cast<double>(particles.size());
-        totals_.impulse_from_body_force +=
-            (dt * config.density * volume * count) * hydrostatics_.force(temperature / count);
-    }
+    book_body_force(dt);
     passed_heat_.assign(compartments, 0);
     for (std::size_t c = 0; c < boundary_.cells().size(); ++c) {
         const double length = boundary_.cells()[c].length;
@@ -400,17 +407,11 @@ void Fluid::Implementation::pass(std::uint32_t c, double heat, Vec2 impulse) {
 /// Books the power of the body forces and the viscous dissipation 2 mu D:D in this step.
 void Fluid::Implementation::book_energy(double dt) {
     const double mass = config.density * volume;
-    if (buoyant_) {
-        totals_.buoyancy_work += dt * mass * sum([&](std::size_t a) {
-                                     const Fields& f = particles.fields[a];
-                                     return dot(hydrostatics_.force(f.T), {f.u, f.v});
-                                 });
-    }
-    if (forced_) {
-        totals_.buoyancy_work += dt * mass * sum([&](std::size_t a) {
-                                     const Fields& f = particles.fields[a];
-                                     return dot(given_force_[a], {f.u, f.v});
-                                 });
+    if (buoyant_ || forced_) {
+        totals_.body_force_work += dt * mass * sum([&](std::size_t a) {
+                                       const Fields& f = particles.fields[a];
+                                       return dot(body_force(a), {f.u, f.v});
+                                   });
     }
     totals_.viscous_loss += dt * mass * config.kinematic_viscosity * sum([&](std::size_t a) {
                                 const Slope &x = evaluation_.slope_x[a],
@@ -483,7 +484,8 @@ void Fluid::Implementation::measure() {
             e.speed2 = std::max(e.speed2, f.u * f.u + f.v * f.v);
             e.lowest = std::min(e.lowest, f.p);
             e.highest = std::max(e.highest, f.p);
-            e.body_force += norm(hydrostatics_.departure(f.T, particles.compartment[a]));
+            e.body_force += norm(hydrostatics_.departure(f.T, particles.compartment[a])
+                                 + (forced_ ? given_force_[a] : Vec2{}));
             e.lost +=
                 std::isfinite(f.u + f.v + f.p + f.T + particles.x[a] + particles.y[a]) ? 0 : 1;
         }
@@ -521,8 +523,8 @@ void Fluid::Implementation::measure() {
     }
 }
 
-/// c from the flow and the pressure head: c >= 10 U and c^2 >= 10 dp/rho; rises at once and falls
-/// slowly, so that single peaks do not shake it.
+/// c from the flow and the pressure head: c >= 10 U, c^2 >= 10 dp/rho, c^2 >= 100 |b| dx, c >=
+/// nu/dx; rises at once and falls slowly, so that single peaks do not shake it.
 void Fluid::Implementation::adapt_sound_speed() {
     if (config.sound_speed > 0) {
         sound_speed_ = config.sound_speed;
@@ -536,6 +538,10 @@ void Fluid::Implementation::adapt_sound_speed() {
                                     10 * std::sqrt(head),
                                     viscous});
     sound_speed_ = std::max(wanted, 0.99 * sound_speed_);
+    if (paper_ && !(sound_speed_ > 0)) { // its density is rho0 + p/c^2
+        throw SceneError("the paper's formulation needs a speed of sound, and nothing in this "
+                         "scene sets one; give fluid.sound_speed");
+    }
 }
 
 Fluid::Fluid(const Config& config,

@@ -1,4 +1,4 @@
-// The fluid: weakly compressible SPH in the consistent formulation (docs/theory-fluid.md), usable
+// The fluid: weakly compressible SPH in either formulation (docs/theory-fluid.md), usable
 // in-process. Knows neither files nor sockets.
 //
 //     Fluid fluid(config, chains, interface);          // throws SceneError
@@ -44,8 +44,9 @@ class Fluid {
     /// called before the first window.
     void set_fields(const std::function<Values(Vec2)>& field);
 
-    /// Advances by `window` seconds while the interface moves from `start` to `end` (positions,
-    /// velocities and temperatures linear in time). Both empty without a solid. Returns the number
+    /// Advances by `window` seconds while the interface goes from `start` to `end`: temperatures
+    /// linear in time, each node at constant acceleration, its way the integral of its velocity
+    /// (docs/theory-fluid.md). Both empty without a solid. Returns the number
     /// of outer steps taken.
     int advance(double window, const InterfaceState& start, const InterfaceState& end);
     int advance(double window) { return advance(window, {}, {}); }

@@ -220,7 +220,7 @@ double Participant::longest_window(const v1::Ledger& now) const {
             longest = std::min(longest, body.density() * body.element_size() / sound);
         }
     }
-    return longest;
+    return std::isfinite(longest) ? longest : 0; // 0: no limit
 }
 
 std::string Participant::save() const {
@@ -254,10 +254,13 @@ void Participant::fill(v1::Ledger& ledger) const {
     figure["closure_shift_abs"] = now.closure_shift_abs;
     figure["particles_outside"] = static_cast<double>(now.particles_outside);
     figure["wall_hits"] = static_cast<double>(now.wall_hits);
-    figure["buoyancy_work"] = now.buoyancy_work;
-    figure["viscous_loss"] = now.viscous_loss;
     figure["work_from_walls"] = now.work_from_walls;
-    figure["mechanical_residual"] = now.mechanical_residual;
+    figure["body_force_work"] = now.body_force_work;
+    if (scene_.fluid().formulation()
+        == v1::Fluid::CONSISTENT) { // the paper's has no velocity slopes
+        figure["viscous_loss"] = now.viscous_loss;
+        figure["mechanical_residual"] = now.mechanical_residual;
+    }
     figure["momentum_x"] = now.momentum.x;
     figure["momentum_y"] = now.momentum.y;
     figure["impulse_from_walls_x"] = now.impulse_from_walls.x;

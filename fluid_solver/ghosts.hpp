@@ -113,7 +113,6 @@ class Ghosts {
     };
     Straight straight(double d1) const; ///< from the table
 
-    double lattice() const { return lattice_; }
     /// A particle closer to a wall than this counts as this far off in the ratio d2/d1.
     double least_distance() const { return least_distance_; }
 

@@ -13,10 +13,26 @@
 #include "fluid_solver/wall_estimate.hpp"
 
 #include <array>
+#include <ctime>
 #include <optional>
 #include <vector>
 
 namespace duet::fluid {
+
+enum PhaseIndex { moving, sorting, evaluating, inner_steps, walls_and_closure };
+
+/// Adds the CPU time of its own life, all threads together, to a phase.
+class Stamp {
+  public:
+    explicit Stamp(double& seconds) : seconds_(seconds) {}
+    ~Stamp() { seconds_ += static_cast<double>(std::clock() - start_) / CLOCKS_PER_SEC; }
+    Stamp(const Stamp&) = delete;
+    Stamp& operator=(const Stamp&) = delete;
+
+  private:
+    double& seconds_;
+    std::clock_t start_ = std::clock();
+};
 
 class Fluid::Implementation {
   public:
@@ -45,7 +61,7 @@ class Fluid::Implementation {
     std::vector<WallReport> walls;
 
   private:
-    /// The interface over the present window, linear in time.
+    /// The interface at the ends of the present window.
     struct Motion {
         const InterfaceState* start = nullptr;
         const InterfaceState* end = nullptr;
@@ -69,7 +85,11 @@ class Fluid::Implementation {
     void move(double dt, bool with_shift);
     void keep_inside();
     void evaluate(double dt);
-    void add_body_force(double now, double dt);
+    void begin_step(double dt, double elapsed, const Motion& motion);
+    void finish_step(double dt, double elapsed, const Motion& motion);
+    void take_body_force(double now);
+    Vec2 body_force(std::size_t a) const;
+    void book_body_force(double dt);
     Vec2 momentum() const;
     void accelerate(double dt);
     void book(double dt);

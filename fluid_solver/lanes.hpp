@@ -32,10 +32,6 @@ inline Lanes load(const Fields& f) {
     return r;
 }
 
-inline void store(Fields& f, const Lanes& r) {
-    std::memcpy(&f, &r, sizeof r);
-}
-
 inline void store(Slope& f, const Four& r) {
     std::memcpy(&f, &r, sizeof r);
 }

@@ -8,17 +8,8 @@ namespace duet::fluid {
 /// 1. x += dt/2 v; sort. 2. (39)-(41), (48), (52) and the shift (43). 3. v, T; then p by (38), (42)
 /// with the new v. 4. x += dt/2 v + shift. The fields are not corrected after the shift.
 void Fluid::Implementation::paper_step(double dt, double elapsed, const Motion& motion) {
-    const double now = time + elapsed + 0.5 * dt;
-    move(0.5 * dt, false);
-    place_interface(elapsed + 0.5 * dt, motion);
-    keep_inside();
-    particles.sort(grid_);
-    if (forced_) {
-        given_force_.resize(particles.size());
-        for (std::size_t a = 0; a < particles.size(); ++a) {
-            given_force_[a] = config.body_force(particles.position(a), now);
-        }
-    }
+    begin_step(dt, elapsed, motion);
+    take_body_force(time + elapsed + 0.5 * dt);
     const paper::Material material{config.density,
                                    config.kinematic_viscosity,
                                    heat_ ? config.conductivity : 0,
@@ -32,13 +23,7 @@ void Fluid::Implementation::paper_step(double dt, double elapsed, const Motion& 
                 material,
                 volume,
                 given_force_);
-    const double m = config.density * volume;
-    for (std::size_t a = 0; a < particles.size(); ++a) {
-        const Fields& f = particles.fields[a];
-        totals_.impulse_from_body_force += (dt * m)
-                                           * ((buoyant_ ? hydrostatics_.force(f.T) : Vec2{})
-                                              + (forced_ ? given_force_[a] : Vec2{}));
-    }
+    book_body_force(dt);
     for_particles(particles.size(), config.threads, [&](std::size_t a) {
         Fields& f = particles.fields[a];
         f.u += dt * paper_->acceleration[a].x;
@@ -59,12 +44,7 @@ void Fluid::Implementation::paper_step(double dt, double elapsed, const Motion& 
             pass(transfer.cell, dt * transfer.heat_flow, dt * transfer.force);
         }
     }
-    move(0.5 * dt, true);
-    place_interface(elapsed + dt, motion);
-    keep_inside();
-    level();
-    measure();
-    adapt_sound_speed();
+    finish_step(dt, elapsed, motion);
 }
 
 } // namespace duet::fluid

@@ -138,7 +138,7 @@ struct Ledger {
     Vec2 momentum;                     ///< N s/m, relative to the start
     double work_from_interface = 0;    ///< J/m
     double work_from_walls = 0;        ///< J/m
-    double buoyancy_work = 0;          ///< J/m, that of a given body force included
+    double body_force_work = 0;        ///< J/m, of buoyancy and the given body force
     double viscous_loss = 0;           ///< J/m, 2 mu D:D over fluid and time
     double kinetic_energy = 0;         ///< J/m
     double mechanical_residual = 0;    ///< J/m, kinetic energy gained beyond what the four explain

@@ -60,6 +60,25 @@ void Boundary::add_loop(std::vector<Vec2> corners, bool hole) {
     }
 }
 
+/// A wall that turns keeps its place only where it is a polygon round a circle about its centre:
+/// each side is seen from there at a right angle, and bulges by little.
+void Boundary::check_turning(const Wall& wall, const Side& side) const {
+    if (!wall.rotation) {
+        return;
+    }
+    constexpr double largest_bulge = 0.05; // of a spacing
+    const Vec2 middle = 0.5 * (side.a + side.b) - wall.rotation->centre;
+    const Vec2 half = 0.5 * (side.b - side.a);
+    const double radius = norm(middle + half);
+    if (std::abs(dot(middle, half)) > 1e-6 * radius * norm(half)
+        || radius - norm(middle) > largest_bulge * spacing_) {
+        throw SceneError("wall '" + wall.name + "' cannot turn about "
+                         + print(wall.rotation->centre)
+                         + ": it is no fine polygon round a circle about that point; take a disc, "
+                           "or a velocity along the wall");
+    }
+}
+
 void Boundary::assign_walls() {
     const double tolerance = 1e-6 * spacing_;
     for (std::size_t w = 0; w < walls_.size(); ++w) {
@@ -72,6 +91,7 @@ void Boundary::assign_walls() {
         if (wall.around) {
             for (Side& side : loops_.at(*wall.around)) {
                 take(side);
+                check_turning(wall, side);
             }
         } else {
             for (std::vector<Side>& loop : loops_) {
@@ -79,6 +99,7 @@ void Boundary::assign_walls() {
                     if (distance_to_segment(side.a, wall.from, wall.to) < tolerance
                         && distance_to_segment(side.b, wall.from, wall.to) < tolerance) {
                         take(side);
+                        check_turning(wall, side);
                     }
                 }
             }

@@ -18,7 +18,8 @@ double imbalance(double a, double b, double scale) {
 bool finite(const v1::Ledger& ledger) {
     return std::isfinite(ledger.heat() + ledger.heat_from_interface() + ledger.heat_from_walls()
                          + ledger.heat_from_sources() + ledger.impulse_x() + ledger.impulse_y()
-                         + ledger.work() + ledger.mass());
+                         + ledger.work() + ledger.mass() + ledger.work_of_loads()
+                         + ledger.exchanged_work());
 }
 
 /// What a side holds beyond all that passed into it, interface apart, J/m.

@@ -113,7 +113,10 @@ class Reader {
                                 const Field& field,
                                 const std::string& path);
     void fill(const toml::node& node, v1::Function& f, const Field& field, const std::string& path);
-    void fill_table(const toml::table& table, v1::TimeTable& t, const std::string& path);
+    bool fill_table(const toml::table& table, v1::TimeTable& t, const std::string& path);
+    bool has_only(const toml::table& table,
+                  const std::vector<std::string>& known,
+                  const std::string& path);
     void fill_absent(Message& message, const Field& field, const std::string& path);
     std::optional<std::string> existing_file(const std::string& text, const std::string& path);
 
@@ -371,9 +374,10 @@ void Reader::fill(const toml::node& node,
                   const std::string& path) {
     if (node.is_string())
         f.set_formula(node.value_or(std::string{}));
-    else if (node.is_table())
-        fill_table(*node.as_table(), *f.mutable_table(), path);
-    else if (node.is_number())
+    else if (node.is_table()) {
+        if (!fill_table(*node.as_table(), *f.mutable_table(), path))
+            return;
+    } else if (node.is_number())
         f.set_number(node.value_or(0.0));
     else
         return wrong_type(node, field, path);
@@ -393,13 +397,33 @@ void Reader::fill(const toml::node& node,
     }
 }
 
-/// { time = [..], value = [..] }, or columns of a CSV file.
-void Reader::fill_table(const toml::table& table, v1::TimeTable& t, const std::string& path) {
-    const auto text = [&](const char* key) { return table[key].value_or(std::string{}); };
-    if (const std::string name = text("file"); !name.empty()) {
-        const auto file = existing_file(name, path);
+bool Reader::has_only(const toml::table& table,
+                      const std::vector<std::string>& known,
+                      const std::string& path) {
+    const auto bad = std::find_if(table.begin(), table.end(), [&](const auto& entry) {
+        return std::find(known.begin(), known.end(), entry.first.str()) == known.end();
+    });
+    if (bad == table.end())
+        return true;
+    problem(path,
+            path + " holds the unknown key '" + std::string(bad->first.str()) + "'; it takes "
+                + list(known, "and"));
+    return false;
+}
+
+/// { time = [..], value = [..] }, or columns of a CSV file. False if it has told a problem.
+bool Reader::fill_table(const toml::table& table, v1::TimeTable& t, const std::string& path) {
+    if (table.contains("file")) {
+        const auto text = [&](const char* key) { return table[key].value_or(std::string{}); };
+        if (!has_only(table, {"file", "along", "column"}, path))
+            return false;
+        if (text("column").empty()) {
+            problem(path, path + " must say which column of the file it takes: column = \"angle\"");
+            return false;
+        }
+        const auto file = existing_file(text("file"), path);
         if (!file)
-            return;
+            return false;
         try {
             const ReferenceTable columns(*file);
             const std::vector<double>& time = columns.column(text("along"));
@@ -408,8 +432,9 @@ void Reader::fill_table(const toml::table& table, v1::TimeTable& t, const std::s
             t.mutable_value()->Add(value.begin(), value.end());
         } catch (const std::runtime_error& fault) {
             problem(path, path + ": " + fault.what());
+            return false;
         }
-        return;
+        return true;
     }
     for (const auto& [key, target] :
          {std::pair{"time", t.mutable_time()}, std::pair{"value", t.mutable_value()}}) {
@@ -417,13 +442,16 @@ void Reader::fill_table(const toml::table& table, v1::TimeTable& t, const std::s
         for (std::size_t i = 0; numbers && i < numbers->size(); ++i)
             if ((*numbers)[i].is_number())
                 target->Add((*numbers)[i].value_or(0.0));
-        if (!numbers || target->size() != static_cast<int>(numbers->size()))
-            return problem(path,
-                           path
-                               + " must hold two arrays of numbers, { time = [..], value = [..] }"
-                                 ", or name a file: { file = \"motion.csv\", along = \"t\", "
-                                 "column = \"angle\" }");
+        if (!numbers || target->size() != static_cast<int>(numbers->size())) {
+            problem(path,
+                    path
+                        + " must hold two arrays of numbers, { time = [..], value = [..] }, or "
+                          "name a file: { file = \"motion.csv\", along = \"t\", column = "
+                          "\"angle\" }");
+            return false;
+        }
     }
+    return has_only(table, {"time", "value"}, path);
 }
 
 } // namespace
@@ -452,7 +480,9 @@ Case parse_case(const std::string& text,
     for (const std::string& override_text : overrides) {
         const Place place{"--set " + override_text, 0, 0};
         try {
-            reader.overridden(apply_override(root, override_text), place);
+            const std::string path = apply_override(root, override_text);
+            result.overridden.insert(path);
+            reader.overridden(path, place);
         } catch (const std::invalid_argument& error) {
             problems.push_back({place, error.what()});
         }

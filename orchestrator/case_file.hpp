@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -58,6 +59,7 @@ struct Case {
     std::filesystem::path folder; ///< absolute, where it lies
     std::string name;             ///< of the folder; of the file, if it is not called case.toml
     Places places;
+    std::set<std::string> overridden; ///< keys given by --set
 };
 
 /// Reads a case: a folder that holds case.toml, or a file. `overrides` are texts

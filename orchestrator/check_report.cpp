@@ -4,6 +4,7 @@
 #include "orchestrator/geometry.hpp"
 #include "orchestrator/progress.hpp"
 #include "orchestrator/schema.hpp"
+#include "protocol/function.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -42,66 +43,59 @@ double diffusivity(double conductivity, double density, double heat_capacity) {
     return conductivity / (density * heat_capacity);
 }
 
-/// What the scene itself tells of a body's area, m2; a mesh file's is known to the solid alone.
-double area_of(const v1::Body& body) {
-    const double pi = std::acos(-1.0);
-    if (body.has_rectangle())
-        return body.rectangle().width() * body.rectangle().height();
-    const double outer = body.has_disc() ? body.disc().radius() : body.ring().outer_radius();
-    return pi * (outer * outer - body.ring().inner_radius() * body.ring().inner_radius());
+/// Places at which the formulas of a scene are tried.
+std::vector<Point> places_of(const v1::Scene& scene) {
+    std::vector<Point> places = outline(scene.fluid());
+    for (const v1::Body& body : scene.solid().body()) {
+        const std::vector<Point> more = outline(body);
+        places.insert(places.end(), more.begin(), more.end());
+    }
+    if (places.empty())
+        places.push_back(point(0, 0));
+    return places;
 }
 
-/// Nodes of a body; a triangulation has one for each square of the elements' size.
-double nodes_of(const v1::Body& body) {
-    if (!body.has_rectangle())
-        return body.element_size() > 0 ? area_of(body) / (body.element_size() * body.element_size())
-                                       : 0;
-    const double across = std::max(1.0, std::round(body.rectangle().width() / body.element_size()));
-    const double up = std::max(1.0, std::round(body.rectangle().height() / body.element_size()));
-    return (across + 1) * (up + 1);
-}
+/// Some of the values that the functions of a scene take: those of a table, and those of a formula
+/// at corners and at three times.
+class Values {
+  public:
+    explicit Values(const v1::Scene& scene) : places_(places_of(scene)), end_(scene.time().end()) {}
 
-double solid_area(const v1::Scene& scene) {
-    double sum = 0;
-    for (const v1::Body& body : scene.solid().body())
-        sum += area_of(body);
-    return sum;
-}
+    std::vector<double> of(const v1::Function& function) const {
+        if (function.has_table())
+            return {function.table().value().begin(), function.table().value().end()};
+        if (!function.has_formula())
+            return {function.number()};
+        const protocol::Function formula(function);
+        std::vector<double> values;
+        for (const Point& place : places_)
+            for (const double time : {0.0, end_ / 3, end_}) {
+                try {
+                    values.push_back(formula(place.x(), place.y(), time));
+                } catch (const std::runtime_error&) { // not finite there; the solver tells
+                }
+            }
+        return values;
+    }
+    double largest(const v1::Function& function) const {
+        double size = 0;
+        for (const double value : of(function))
+            size = std::max(size, std::abs(value));
+        return size;
+    }
+    double largest(const v1::VectorFunction& vector) const {
+        return std::hypot(largest(vector.x()), largest(vector.y()));
+    }
 
-double particles_of(const v1::Scene& scene) {
-    const auto& fluid = scene.fluid();
-    double room = area(outline(fluid)) - solid_area(scene);
-    for (const v1::Hole& hole : fluid.hole())
-        room -= area(outline(hole));
-    return room / (fluid.spacing() * fluid.spacing());
-}
-
-/// The values that a function is known to take; a formula counts as two different ones.
-void add_values(const v1::Function& function, std::vector<double>& all) {
-    if (function.has_formula())
-        all.insert(all.end(), {0, 1});
-    else if (function.has_table())
-        all.insert(all.end(), function.table().value().begin(), function.table().value().end());
-    else
-        all.push_back(function.number());
-}
-
-double largest(const v1::VectorFunction& vector) {
-    std::vector<double> x = {0}, y = {0};
-    add_values(vector.x(), x);
-    add_values(vector.y(), y);
-    const auto by_size = [](double a, double b) { return std::abs(a) < std::abs(b); };
-    return std::hypot(*std::max_element(x.begin(), x.end(), by_size),
-                      *std::max_element(y.begin(), y.end(), by_size));
-}
+  private:
+    std::vector<Point> places_;
+    double end_;
+};
 
 /// In a cavity of this extent.
-double wall_speed(const v1::Wall& wall, double extent) {
-    std::vector<double> rates = {0};
-    if (wall.has_rotation())
-        add_values(wall.rotation().rate(), rates);
-    const auto [low, high] = std::minmax_element(rates.begin(), rates.end());
-    return largest(wall.velocity()) + std::max(*high, -*low) * extent / 2;
+double wall_speed(const v1::Wall& wall, double extent, const Values& values) {
+    const double rate = wall.has_rotation() ? values.largest(wall.rotation().rate()) : 0;
+    return values.largest(wall.velocity()) + rate * extent / 2;
 }
 
 std::string heat_condition(const v1::Wall& wall) {
@@ -112,42 +106,49 @@ std::string heat_condition(const v1::Wall& wall) {
     };
     if (wall.has_temperature())
         return text(wall.temperature(), " K");
-    const v1::Function& flux = wall.heat_flux();
-    return flux.has_number() && flux.number() == 0 ? "adiabatic" : text(flux, " W/m2");
+    return protocol::is_zero(wall.heat_flux()) ? "adiabatic" : text(wall.heat_flux(), " W/m2");
 }
 
 /// Every temperature of the scene; all equal means that no heat flows.
 std::vector<double> temperatures(const v1::Scene& scene) {
+    const Values values(scene);
     std::vector<double> all;
+    const auto add = [&](const v1::Function& function) {
+        const std::vector<double> more = values.of(function);
+        all.insert(all.end(), more.begin(), more.end());
+    };
     if (scene.has_fluid())
-        add_values(scene.fluid().initial_temperature(), all);
+        add(scene.fluid().initial_temperature());
     for (const v1::Wall& wall : scene.fluid().wall())
         if (wall.has_temperature())
-            add_values(wall.temperature(), all);
+            add(wall.temperature());
     for (const v1::Body& body : scene.solid().body()) {
-        add_values(body.initial_temperature(), all);
+        add(body.initial_temperature());
         for (const v1::Boundary& boundary : body.boundary()) {
             if (boundary.has_temperature())
-                add_values(boundary.temperature(), all);
+                add(boundary.temperature());
             if (boundary.has_convection())
-                add_values(boundary.convection().temperature(), all);
+                add(boundary.convection().temperature());
         }
     }
     return all;
 }
 
-bool is_zero(const v1::Function& function) {
-    std::vector<double> values;
-    add_values(function, values);
-    return std::all_of(values.begin(), values.end(), [](double v) { return v == 0; });
+/// By its own compression (31).
+bool heats_itself(const v1::Body& body) {
+    return body.motion() == v1::Body::DEFORMABLE && body.thermoelastic_heating()
+           && body.thermal_expansion() != 0;
 }
 
 bool heat_released(const v1::Scene& scene) {
+    for (const v1::Wall& wall : scene.fluid().wall())
+        if (!protocol::is_zero(wall.heat_flux()))
+            return true;
     for (const v1::Body& body : scene.solid().body()) {
         if (body.heat_source() != 0)
             return true;
         for (const v1::Boundary& boundary : body.boundary())
-            if (!is_zero(boundary.heat_flux()))
+            if (!protocol::is_zero(boundary.heat_flux()))
                 return true;
     }
     return false;
@@ -179,9 +180,10 @@ Estimate estimate(const v1::Scene& scene) {
         out.speed =
             std::sqrt(gravity * fluid.thermal_expansion() * out.temperature_range * extent(region))
             / 3;
-    out.speed = std::max(out.speed, largest(fluid.initial_velocity()));
+    const Values values(scene);
+    out.speed = std::max(out.speed, values.largest(fluid.initial_velocity()));
     for (const v1::Wall& wall : fluid.wall())
-        out.speed = std::max(out.speed, wall_speed(wall, extent(region)));
+        out.speed = std::max(out.speed, wall_speed(wall, extent(region), values));
     const double slowest = std::max(
         fluid.kinematic_viscosity(),
         out.heat ? diffusivity(fluid.conductivity(), fluid.density(), fluid.heat_capacity()) : 0);
@@ -208,8 +210,9 @@ void describe_fluid(const v1::Scene& scene, const Estimate& e, std::string& out)
                          : "left out (no gravity or no expansion)")
            + "\n";
     for (const v1::Wall& wall : fluid.wall())
-        out += "        wall '" + wall.name() + "': " + heat_condition(wall)
-               + (wall_speed(wall, extent(outline(fluid))) > 0 ? ", moving\n" : "\n");
+        out +=
+            "        wall '" + wall.name() + "': " + heat_condition(wall)
+            + (wall_speed(wall, extent(outline(fluid)), Values(scene)) > 0 ? ", moving\n" : "\n");
     for (const v1::Hole& hole : fluid.hole())
         out +=
             "        hole '" + hole.name() + "' of " + number_text(area(outline(hole))) + " m2\n";
@@ -238,9 +241,8 @@ double explicit_step(const v1::Body& body, const Estimate& e) {
 std::string automatic_steps(const v1::Body& body, const Estimate& e) {
     const double steps = e.window / explicit_step(body, e);
     const double worth = body.motion() != v1::Body::DEFORMABLE ? heat_step_worth
-                         : body.thermoelastic_heating() && body.thermal_expansion() != 0
-                             ? heated_step_worth
-                             : unheated_step_worth;
+                         : heats_itself(body)                  ? heated_step_worth
+                                                               : unheated_step_worth;
     if (!(steps > 0))
         return "explicit or implicit, as the first window shows";
     return std::string(steps > worth ? "implicit" : "explicit") + " (about "
@@ -258,7 +260,10 @@ void describe_solid(const v1::Scene& scene, const Estimate& e, std::string& out)
                + (body.motion() == v1::Body::DEFORMABLE   ? "thermo-elastic, finite deformation"
                   : body.motion() == v1::Body::PRESCRIBED ? "left out (rigid, moved as prescribed)"
                                                           : "left out (fixed and rigid)")
-               + "; heat: " + (e.heat ? "conduction" : "left out (one temperature everywhere)")
+               + "; heat: "
+               + (heats_itself(body) ? "conduction and thermo-elastic heating"
+                  : e.heat           ? "conduction"
+                                     : "left out (one temperature everywhere)")
                + "; steps: "
                + (body.stepping() == v1::Body::IMPLICIT    ? "implicit"
                   : body.stepping() == v1::Body::AUTOMATIC ? automatic_steps(body, e)
@@ -277,7 +282,7 @@ void describe_coupling(const v1::Scene& scene, const Estimate& e, std::string& o
     for (const v1::Body& body : scene.solid().body()) {
         if (body.element_size() == 0)
             continue; // the solid reports its limits when it has read the mesh
-        if (e.heat && fluid.conductivity() > 0) {
+        if (e.heat && fluid.conductivity() > 0 && !body.insulated()) {
             // The first layer of the solid must not overshoot:
             // rho_s c_s dx_s / 2 > window k_f / (0.5 dx).
             const double longest = body.density() * body.heat_capacity() * body.element_size() / 2
@@ -290,8 +295,14 @@ void describe_coupling(const v1::Scene& scene, const Estimate& e, std::string& o
             // In a window the fluid reacts with the mass rho_f c window on each area:
             // rho_s dx_s must exceed it.
             const double sound = fluid.sound_speed() > 0 ? fluid.sound_speed() : 10 * e.speed;
+            if (sound == 0) {
+                out += "        '" + body.name()
+                       + "', added mass: not known before the run, for nothing here sets a speed; "
+                         "the windows will follow the sound\n";
+                continue;
+            }
             const double mass = fluid.density() * sound * e.window;
-            const double ratio = body.density() * body.element_size() / std::max(mass, 1e-300);
+            const double ratio = body.density() * body.element_size() / mass;
             out += "        '" + body.name() + "', added mass: the first layer weighs "
                    + number(ratio) + " times what the fluid moves in a window"
                    + (ratio < 1 ? ": TOO LIGHT, shorten time.window" : "") + "\n";

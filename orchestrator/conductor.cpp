@@ -359,11 +359,10 @@ Failure Conductor::root_cause(const Failure& first) {
         try {
             attend(std::move(*event));
         } catch (const Failure& other) {
-            if (!other.direct()) {
-                if (repeats(first, other))
-                    return other;
+            if (repeats(first, other))
+                return other;
+            if (!other.direct())
                 continue;
-            }
             if (other.who() == first.who())
                 return other;
             return Failure(other.who(),

@@ -30,6 +30,14 @@ bool crosses(const Point& a, const Point& b, const Point& c, const Point& d, dou
     return apart(a, b, c, d) && apart(c, d, a, b);
 }
 
+bool sides_cross(const Polygon& a, const Polygon& b, double tolerance) {
+    for (std::size_t i = 0; i < a.size(); ++i)
+        for (std::size_t j = 0; j < b.size(); ++j)
+            if (crosses(a[i], a[(i + 1) % a.size()], b[j], b[(j + 1) % b.size()], tolerance))
+                return true;
+    return false;
+}
+
 std::string corner_name(std::size_t i) {
     return "corner [" + std::to_string(i) + "]";
 }
@@ -84,6 +92,53 @@ Polygon outline(const v1::Hole& hole) {
     if (hole.has_disc())
         return corners(hole.disc());
     return {hole.corners().begin(), hole.corners().end()};
+}
+
+Polygon outline(const v1::Body& body) {
+    if (body.has_rectangle())
+        return corners(body.rectangle());
+    if (body.has_disc())
+        return corners(body.disc());
+    if (!body.has_ring())
+        return {};
+    v1::Disc disc;
+    *disc.mutable_centre() = body.ring().centre();
+    disc.set_radius(body.ring().outer_radius());
+    return corners(disc);
+}
+
+/// What the scene itself tells of a body's area, m2; a mesh file's is known to the solid alone.
+double area_of(const v1::Body& body) {
+    const double pi = std::acos(-1.0);
+    if (body.has_rectangle())
+        return body.rectangle().width() * body.rectangle().height();
+    const double outer = body.has_disc() ? body.disc().radius() : body.ring().outer_radius();
+    return pi * (outer * outer - body.ring().inner_radius() * body.ring().inner_radius());
+}
+
+/// Nodes of a body; a triangulation has one for each square of the elements' size.
+double nodes_of(const v1::Body& body) {
+    if (!body.has_rectangle())
+        return body.element_size() > 0 ? area_of(body) / (body.element_size() * body.element_size())
+                                       : 0;
+    const double across = std::max(1.0, std::round(body.rectangle().width() / body.element_size()));
+    const double up = std::max(1.0, std::round(body.rectangle().height() / body.element_size()));
+    return (across + 1) * (up + 1);
+}
+
+double solid_area(const v1::Scene& scene) {
+    double sum = 0;
+    for (const v1::Body& body : scene.solid().body())
+        sum += area_of(body);
+    return sum;
+}
+
+double particles_of(const v1::Scene& scene) {
+    const auto& fluid = scene.fluid();
+    double room = area(outline(fluid)) - solid_area(scene);
+    for (const v1::Hole& hole : fluid.hole())
+        room -= area(outline(hole));
+    return room / (fluid.spacing() * fluid.spacing());
 }
 
 double extent(const Polygon& polygon) {
@@ -177,6 +232,31 @@ bool rectangle_inside(const v1::Rectangle& rectangle, const Polygon& polygon, do
         if (enters(rectangle, polygon[i], polygon[(i + 1) % polygon.size()], tolerance))
             return false;
     return true;
+}
+
+bool on_boundary(const Polygon& polygon, const Point& p, double tolerance) {
+    for (std::size_t i = 0; i < polygon.size(); ++i)
+        if (on_piece(p, polygon[i], polygon[(i + 1) % polygon.size()], tolerance))
+            return true;
+    return false;
+}
+
+bool overlap(const Polygon& a, const Polygon& b, double tolerance) {
+    const auto holds = [&](const Polygon& polygon, const Polygon& corners) {
+        return std::any_of(corners.begin(), corners.end(), [&](const Point& p) {
+            return inside(polygon, p, tolerance) && !on_boundary(polygon, p, tolerance);
+        });
+    };
+    return holds(a, b) || holds(b, a) || sides_cross(a, b, tolerance);
+}
+
+bool meet(const Polygon& a, const Polygon& b, double tolerance) {
+    const auto holds = [&](const Polygon& polygon, const Polygon& corners) {
+        return std::any_of(corners.begin(), corners.end(), [&](const Point& p) {
+            return inside(polygon, p, tolerance);
+        });
+    };
+    return holds(a, b) || holds(b, a) || sides_cross(a, b, tolerance);
 }
 
 bool overlap(const v1::Rectangle& a, const v1::Rectangle& b, double tolerance) {

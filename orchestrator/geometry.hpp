@@ -31,11 +31,24 @@ Polygon corners(const v1::Disc& disc);
 Polygon outline(const v1::Fluid& fluid);
 Polygon outline(const v1::Hole& hole);
 
+/// Of the room that a body takes, a ring's hole included; empty for a mesh file, which the solid
+/// alone reads.
+Polygon outline(const v1::Body& body);
+
+/// What the scene itself tells of a body's area, m2, and of its nodes, about; 0 for a mesh file.
+double area_of(const v1::Body& body);
+double nodes_of(const v1::Body& body);
+
+/// How many particles the fluid has, about.
+double particles_of(const v1::Scene& scene);
+
 /// The larger extent along x or y.
 double extent(const Polygon& polygon);
 
 /// What keeps a polygon from being simple, as half a sentence; nothing for a good one.
 std::optional<std::string> polygon_fault(const Polygon& polygon, double tolerance);
+
+bool on_boundary(const Polygon& polygon, const Point& p, double tolerance);
 
 /// Inside or on the boundary.
 bool inside(const Polygon& polygon, const Point& p, double tolerance);
@@ -45,6 +58,10 @@ bool rectangle_inside(const v1::Rectangle& rectangle, const Polygon& polygon, do
 
 /// The two share more than a boundary.
 bool overlap(const v1::Rectangle& a, const v1::Rectangle& b, double tolerance);
+/// The two polygons share more than boundaries.
+bool overlap(const Polygon& a, const Polygon& b, double tolerance);
+/// The two polygons have a point in common, if only of their boundaries.
+bool meet(const Polygon& a, const Polygon& b, double tolerance);
 
 /// Strictly inside the rectangle, farther than tolerance from its sides.
 bool strictly_inside(const v1::Rectangle& rectangle, const Point& p, double tolerance);

@@ -4,6 +4,7 @@
 #include "orchestrator/geometry.hpp"
 #include "orchestrator/reference_table.hpp"
 #include "orchestrator/schema.hpp"
+#include "protocol/function.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -29,23 +30,10 @@ double latest(const v1::Scene& scene) {
 
 /// True if the end of the run was given on the command line.
 bool shortened(const Case& given) {
-    return given.places.find("time.end").source.starts_with("--set");
+    return given.overridden.contains("time.end");
 }
 
-bool is_zero(const v1::Function& function) {
-    return !function.has_formula() && !function.has_table() && function.number() == 0;
-}
-
-bool is_zero(const v1::VectorFunction& function) {
-    return is_zero(function.x()) && is_zero(function.y());
-}
-
-bool on_boundary(const Polygon& polygon, const Point& p, double tolerance) {
-    for (std::size_t i = 0; i < polygon.size(); ++i)
-        if (on_piece(p, polygon[i], polygon[(i + 1) % polygon.size()], tolerance))
-            return true;
-    return false;
-}
+using protocol::is_zero;
 
 class Checker {
   public:
@@ -84,6 +72,11 @@ class Checker {
     void check_fluid();
     void check_hole(const v1::Hole& hole, const std::string& path);
     void check_wall(const v1::Wall& wall, const std::string& path);
+    void check_sharing(const v1::Wall& wall, const std::string& path);
+    void check_motion(const v1::Body& body, const std::string& path);
+    void check_point_loads(const v1::Body& body, const std::string& path);
+    void check_size(double count, const std::string& what, const std::string& path);
+    void steady_in_place(const v1::Function& function, const std::string& path);
     void check_bodies();
     void check_body(const v1::Body& body, const std::string& path);
     void check_shape(const v1::Body& body, const std::string& path);
@@ -166,12 +159,28 @@ void Checker::check_fluid() {
     region_good_ = true;
     if (scene_.fluid().spacing() > extent(region_) / 2)
         problem("fluid.spacing", "fluid.spacing is more than half the extent of the region");
+    check_size(particles_of(scene_), "fluid particles", "fluid.spacing");
     check_names("fluid.hole", scene_.fluid().hole());
     for (int i = 0; i < scene_.fluid().hole_size(); ++i)
         check_hole(scene_.fluid().hole(i), entry("fluid.hole", i));
     check_names("fluid.wall", scene_.fluid().wall());
     for (int i = 0; i < scene_.fluid().wall_size(); ++i)
         check_wall(scene_.fluid().wall(i), entry("fluid.wall", i));
+}
+
+/// What no machine of the kind that runs this holds in its memory.
+void Checker::check_size(double count, const std::string& what, const std::string& path) {
+    constexpr double most = 1e8;
+    if (count > most)
+        problem(path,
+                path + " makes " + number_text(std::round(count)) + " " + what
+                    + "; make it larger");
+}
+
+/// A rigid motion is that of a whole.
+void Checker::steady_in_place(const v1::Function& function, const std::string& path) {
+    if (protocol::Function(function).depends_on_place())
+        problem(path, path + " moves a whole: it may depend on the time t, not on x or y");
 }
 
 void Checker::check_hole(const v1::Hole& hole, const std::string& path) {
@@ -190,6 +199,19 @@ void Checker::check_hole(const v1::Hole& hole, const std::string& path) {
                 "the hole '" + hole.name()
                     + "' reaches the boundary of the cavity; move it inside, or give the region "
                       "the corners of what is left");
+    for (const v1::Hole& other : scene_.fluid().hole()) {
+        if (&other == &hole)
+            break;
+        if (meet(polygon, outline(other), tolerance_))
+            problem(path,
+                    "the holes '" + other.name() + "' and '" + hole.name()
+                        + "' meet; make one polygon of them, or move them apart");
+    }
+    for (const v1::Body& body : scene_.solid().body())
+        if (overlap(polygon, outline(body), tolerance_))
+            problem(path,
+                    "the hole '" + hole.name() + "' and the body '" + body.name()
+                        + "' overlap; a body lies in the fluid, or leans on a wall");
 }
 
 void Checker::check_wall(const v1::Wall& wall, const std::string& path) {
@@ -197,6 +219,14 @@ void Checker::check_wall(const v1::Wall& wall, const std::string& path) {
         && (!wall.heat_flux().has_number() || wall.heat_flux().number() != 0))
         problem(path + ".temperature",
                 path + " prescribes a temperature and a heat flux; keep one of them");
+    else if (scene_.fluid().conductivity() == 0
+        && (wall.has_temperature() || !is_zero(wall.heat_flux())))
+        problem(path,
+                "a fluid without 'conductivity' takes no heat from the wall '" + wall.name()
+                    + "'; give fluid.conductivity, or leave the wall's heat out");
+    if (wall.has_rotation())
+        steady_in_place(wall.rotation().rate(), path + ".rotation.rate");
+    check_sharing(wall, path);
     if (wall.around().empty() == (wall.along_size() == 0))
         return problem(path, path + " needs either 'along', two points, or 'around', a hole");
     if (!wall.around().empty()) {
@@ -221,20 +251,50 @@ void Checker::check_wall(const v1::Wall& wall, const std::string& path) {
         problem(path + ".along",
                 "no side of fluid.region lies between " + at_text(a) + " and " + at_text(b)
                     + "; give the two ends of a side");
-    for (int j = 0; j < scene_.fluid().wall_size(); ++j) {
-        const v1::Wall& other = scene_.fluid().wall(j);
-        if (&other == &wall)
-            break;
-        if (other.along_size() == 2
-            && common_length(a, b, other.along(0), other.along(1), tolerance_) > tolerance_)
-            problem(path + ".along",
-                    "the walls '" + other.name() + "' and '" + wall.name() + "' share a side");
-    }
     const Point velocity = point(wall.velocity().x().number(), wall.velocity().y().number());
     const double across = (b.x() - a.x()) * velocity.y() - (b.y() - a.y()) * velocity.x();
     const double speed = distance(point(0, 0), velocity);
     if (std::abs(across) > 1e-9 * speed * distance(a, b))
         problem(path + ".velocity", "a wall of a closed cavity can only move along itself");
+}
+
+/// No side belongs to two walls.
+void Checker::check_sharing(const v1::Wall& wall, const std::string& path) {
+    const auto outline_of = [&](const std::string& around) {
+        if (around == "region")
+            return region_;
+        for (const v1::Hole& hole : scene_.fluid().hole())
+            if (hole.name() == around)
+                return outline(hole);
+        return Polygon{};
+    };
+    const auto on = [&](const Polygon& polygon, const v1::Wall& one) {
+        double length = 0;
+        for (std::size_t i = 0; i < polygon.size(); ++i)
+            length += common_length(one.along(0),
+                                    one.along(1),
+                                    polygon[i],
+                                    polygon[(i + 1) % polygon.size()],
+                                    tolerance_);
+        return length > tolerance_;
+    };
+    for (const v1::Wall& other : scene_.fluid().wall()) {
+        if (&other == &wall)
+            return;
+        const bool lines = wall.along_size() == 2 && other.along_size() == 2;
+        const bool loops = !wall.around().empty() && !other.around().empty();
+        const bool shared =
+            lines ? common_length(
+                        wall.along(0), wall.along(1), other.along(0), other.along(1), tolerance_)
+                        > tolerance_
+            : loops ? wall.around() == other.around()
+            : wall.along_size() == 2
+                ? on(outline_of(other.around()), wall)
+                : other.along_size() == 2 && on(outline_of(wall.around()), other);
+        if (shared)
+            problem(path,
+                    "the walls '" + other.name() + "' and '" + wall.name() + "' share a side");
+    }
 }
 
 void Checker::check_bodies() {
@@ -263,14 +323,52 @@ void Checker::check_body(const v1::Body& body, const std::string& path) {
                 "body where it starts");
     if (body.motion() != v1::Body::DEFORMABLE && body.point_load_size() > 0)
         problem(path + ".point_load", "only a body with motion = \"deformable\" takes point loads");
-    if (body.motion() != v1::Body::PRESCRIBED
-        && (!is_zero(body.displacement()) || !is_zero(body.angle())))
-        problem(path, "displacement and angle move a body with motion = \"prescribed\" alone");
+    check_motion(body, path);
     if (body.motion() == v1::Body::DEFORMABLE && !body.has_youngs_modulus())
         problem(path, "the deformable body '" + body.name() + "' lacks the key 'youngs_modulus'");
+    check_size(nodes_of(body), "nodes of the body '" + body.name() + "'", path + ".element_size");
+    check_point_loads(body, path);
     check_names(path + ".boundary", body.boundary());
     for (int i = 0; i < body.boundary_size(); ++i)
         check_boundary(body.boundary(i), body, entry(path + ".boundary", i));
+}
+
+/// Keys that say how a body moves go with the way in which it does.
+void Checker::check_motion(const v1::Body& body, const std::string& path) {
+    const bool deformable = body.motion() == v1::Body::DEFORMABLE;
+    if (body.motion() == v1::Body::PRESCRIBED) {
+        steady_in_place(body.displacement().x(), path + ".displacement");
+        steady_in_place(body.displacement().y(), path + ".displacement");
+        steady_in_place(body.angle(), path + ".angle");
+    } else if (!is_zero(body.displacement()) || !is_zero(body.angle())) {
+        problem(path, "displacement and angle move a body with motion = \"prescribed\" alone");
+    }
+    const bool equilibrium = body.start() == v1::Body::EQUILIBRIUM;
+    if (equilibrium && !deformable)
+        problem(path + ".start", "only a body with motion = \"deformable\" starts in equilibrium");
+    if (equilibrium && deformable && !is_zero(body.initial_velocity()))
+        problem(
+            path + ".initial_velocity",
+            "a body that starts in equilibrium is at rest; leave initial_velocity or start out");
+    if (body.implicit_step() > 0 && body.stepping() == v1::Body::EXPLICIT)
+        problem(path + ".implicit_step",
+                "steps are explicit; give stepping = \"implicit\" or \"automatic\" with it");
+    if (deformable && !body.has_reference_temperature() && !body.initial_temperature().has_number())
+        problem(path + ".initial_temperature",
+                "the deformable body '" + body.name()
+                    + "' starts at a temperature that is no number; give reference_temperature, at "
+                      "which it is free of thermal stress");
+}
+
+void Checker::check_point_loads(const v1::Body& body, const std::string& path) {
+    check_names(path + ".point_load", body.point_load());
+    const Polygon room = outline(body);
+    for (int i = 0; i < body.point_load_size(); ++i) {
+        const Point& at = body.point_load(i).at();
+        if (!room.empty() && !inside(room, at, tolerance_))
+            problem(entry(path + ".point_load", i) + ".at",
+                    "the point " + at_text(at) + " lies outside the body '" + body.name() + "'");
+    }
 }
 
 /// A body has one shape, with what belongs to it. What a mesh file holds is the solid's to check.
@@ -331,6 +429,23 @@ void Checker::check_boundary(const v1::Boundary& boundary,
     if ((boundary.along_size() > 0) != boundary.curve().empty())
         return problem(path, path + " needs either 'along' or 'curve' to say where it is");
     check_conditions(boundary, body, path);
+    for (const v1::Boundary& other : body.boundary()) {
+        if (&other == &boundary)
+            break;
+        if (boundary.curve().empty() || other.curve() != boundary.curve())
+            continue;
+        const auto moved = [](const v1::Boundary& b, bool x) {
+            return x ? b.fixed_x() || b.has_displacement_x() || b.has_velocity_x()
+                     : b.fixed_y() || b.has_displacement_y() || b.has_velocity_y();
+        };
+        if ((boundary.has_temperature() && other.has_temperature())
+            || (moved(boundary, true) && moved(other, true))
+            || (moved(boundary, false) && moved(other, false)))
+            problem(path,
+                    "the boundaries '" + other.name() + "' and '" + boundary.name()
+                        + "' prescribe the same on the curve '" + boundary.curve()
+                        + "'; keep one of them");
+    }
     if (boundary.has_temperature() && (!is_zero(boundary.heat_flux()) || boundary.has_convection()))
         problem(path + ".temperature",
                 path + " prescribes a temperature and a heat flux or convection; keep one of them");
@@ -384,6 +499,8 @@ void Checker::check_probe(const v1::Probe& probe, const std::string& path) {
         return problem(path + ".of",
                        std::string("the case has no [") + (of_fluid ? "fluid" : "solid")
                            + "] that could measure it");
+    if (probe.line_size() == 0 && probe.reduce() != v1::Probe::EACH)
+        problem(path + ".reduce", "only the values along a line are reduced");
     if (probe.has_at() && probe.line_size() > 0)
         problem(path, "a probe is taken at a point or along a line, not both");
     if (probe.line_size() == 1
@@ -462,6 +579,16 @@ void Checker::check_check(const v1::Check& check, const std::string& path) {
 
 /// A mean over time is that of a probe, and ends after it begins.
 void Checker::check_mean(const v1::Check& check, const v1::Probe* probe, const std::string& path) {
+    const bool profile = probe && probe->line_size() > 0 && probe->reduce() == v1::Probe::EACH;
+    const bool whole = check.norm() == v1::Check::RMS || check.norm() == v1::Check::MAXIMUM;
+    if (check.from() > 0 && (!probe || profile || !whole || check.has_mean_from()))
+        problem(path + ".from",
+                "'from' leaves out the start of a history that is held as a whole, with the norm "
+                "\"rms\" or \"maximum\"; leave it out here");
+    if (shortened(case_) && std::max(check.from(), check.mean_from()) > latest(scene_))
+        return; // left out
+    if (check.from() > latest(scene_))
+        problem(path + ".from", path + ".from lies after the end of the run");
     if (!check.has_mean_from())
         return;
     double first = scene_.time().end();
@@ -471,8 +598,6 @@ void Checker::check_mean(const v1::Check& check, const v1::Probe* probe, const s
         problem(path + ".mean_from",
                 path + ".mean_from lies after the time at which the check is held, "
                     + number_text(first) + " s");
-    const bool profile = probe && probe->line_size() > 0 && probe->reduce() == v1::Probe::EACH;
-    const bool whole = check.norm() == v1::Check::RMS || check.norm() == v1::Check::MAXIMUM;
     if (!probe || (whole && !profile))
         problem(
             path + ".mean_from",
@@ -553,18 +678,20 @@ void leave_out_later_checks(Case& given) {
     if (!shortened(given))
         return;
     auto& checks = *given.scene.mutable_check();
-    checks.erase(std::remove_if(checks.begin(),
-                                checks.end(),
-                                [&](v1::Check& check) {
-                                    const int before = check.at_size();
-                                    auto& at = *check.mutable_at();
-                                    at.erase(std::remove_if(
-                                                 at.begin(),
+    checks.erase(std::remove_if(
+                     checks.begin(),
+                     checks.end(),
+                     [&](v1::Check& check) {
+                         if (std::max(check.from(), check.mean_from()) > latest(given.scene))
+                             return true;
+                         const int before = check.at_size();
+                         auto& at = *check.mutable_at();
+                         at.erase(std::remove_if(at.begin(),
                                                  at.end(),
                                                  [&](double t) { return t > latest(given.scene); }),
-                                             at.end());
-                                    return before > 0 && at.empty();
-                                }),
+                                  at.end());
+                         return before > 0 && at.empty();
+                     }),
                  checks.end());
 }
 

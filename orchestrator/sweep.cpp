@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <toml++/toml.h>
 
+#include <algorithm>
 #include <sstream>
 #include <stdexcept>
 
@@ -98,8 +99,9 @@ std::vector<Variant> variants_of(const std::vector<std::string>& overrides) {
             throw std::invalid_argument("--set " + text + ": expected KEY=VALUE");
         const std::string key = text.substr(0, equals);
         const std::vector<std::string> values = values_of(key, text.substr(equals + 1));
-        if (values.empty())
-            throw std::invalid_argument("--set " + text + ": the list holds no value");
+        for (const auto& [varied, value] : variants.front().varied)
+            if (varied == key)
+                throw std::invalid_argument("--set " + text + ": the key varies already");
         std::vector<Variant> longer;
         for (const Variant& variant : variants)
             for (const std::string& value : values) {
@@ -118,11 +120,11 @@ std::string sweep_csv(const std::vector<Trial>& trials) {
     out.precision(9);
     for (const auto& [key, value] : trials.at(0).variant.varied)
         out << csv_field(key) << ",";
-    // Variants have the same checks: those of the first that finished name the columns.
+    // A variant may be held at other times than the first: all that any of them has.
     std::vector<std::string> checks;
     for (const Trial& trial : trials)
-        if (checks.empty())
-            for (const Verdict& verdict : trial.verdicts)
+        for (const Verdict& verdict : trial.verdicts)
+            if (std::find(checks.begin(), checks.end(), verdict.quantity) == checks.end())
                 checks.push_back(verdict.quantity);
     for (const std::string& check : checks)
         out << csv_field("error of " + check) << ",";
@@ -133,9 +135,13 @@ std::string sweep_csv(const std::vector<Trial>& trials) {
     for (const Trial& trial : trials) {
         for (const auto& [key, value] : trial.variant.varied)
             out << csv_field(bare(value)) << ",";
-        for (std::size_t i = 0; i < checks.size(); ++i) {
-            if (i < trial.verdicts.size())
-                out << trial.verdicts[i].error;
+        for (const std::string& check : checks) {
+            const auto found =
+                std::find_if(trial.verdicts.begin(),
+                             trial.verdicts.end(),
+                             [&](const Verdict& verdict) { return verdict.quantity == check; });
+            if (found != trial.verdicts.end())
+                out << found->error;
             out << ",";
         }
         for (const Player& player : trial.result.players)

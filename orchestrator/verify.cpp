@@ -132,7 +132,8 @@ Pairs Judge::at_time(const v1::Check& check, const v1::Probe& probe, double time
     return pairs;
 }
 
-/// The mean of the records from check.mean_from to `time`, a profile's point by point.
+/// The mean over time from check.mean_from to `time` by the trapezoidal rule over the records, a
+/// profile's point by point.
 Pairs Judge::mean_until(const v1::Check& check, const v1::Probe& probe, double time) const {
     const double slack = 1e-8 * scene_.time().end();
     std::vector<double> times;
@@ -148,13 +149,17 @@ Pairs Judge::mean_until(const v1::Check& check, const v1::Probe& probe, double t
             take(profile.time);
     Pairs sum = at_time(check, probe, time);
     std::fill(sum.value.begin(), sum.value.end(), 0.0);
-    for (const double t : times) {
-        const Pairs one = at_time(check, probe, t);
+    const double span = times.empty() ? 0 : times.back() - times.front();
+    for (std::size_t k = 0; k < times.size(); ++k) {
+        const double before = times[k == 0 ? k : k - 1];
+        const double after = times[k + 1 == times.size() ? k : k + 1];
+        const double weight = span > 0 ? 0.5 * (after - before) / span : 1;
+        const Pairs one = at_time(check, probe, times[k]);
         if (one.value.size() != sum.value.size())
             throw std::runtime_error(
                 "the line's points in the domain changed in the time of the mean");
         for (std::size_t i = 0; i < sum.value.size(); ++i)
-            sum.value[i] += one.value[i] / static_cast<double>(times.size());
+            sum.value[i] += weight * one.value[i];
     }
     return sum;
 }
@@ -162,7 +167,10 @@ Pairs Judge::mean_until(const v1::Check& check, const v1::Probe& probe, double t
 /// A history as a whole: at the times named, or else wherever it was recorded after the start, from
 /// the time on that the check names.
 Pairs Judge::over_times(const v1::Check& check, const v1::Probe& probe) const {
-    std::vector<double> times(check.at().begin(), check.at().end());
+    std::vector<double> times;
+    for (const double t : check.at())
+        if (t >= check.from())
+            times.push_back(t);
     if (const auto found = result_.histories.find(probe.name());
         times.empty() && found != result_.histories.end())
         for (const double t : found->second.time)
@@ -205,18 +213,22 @@ void Judge::judge(const v1::Check& check, std::vector<Verdict>& out) const {
     });
     if (probe == probes.end())
         return add("", [&] { return figure(check); });
-    const bool whole = check.norm() == v1::Check::RMS || check.norm() == v1::Check::MAXIMUM;
+    const bool rms = check.norm() == v1::Check::RMS;
+    const bool whole = rms || check.norm() == v1::Check::MAXIMUM;
+    const std::string norm = whole ? (rms ? ", rms" : ", maximum") : "";
     if (whole && !is_profile(*probe))
-        return add(" over time", [&] { return over_times(check, *probe); });
+        return add(" over time" + norm, [&] { return over_times(check, *probe); });
     std::vector<double> times(check.at().begin(), check.at().end());
     if (times.empty())
         times.push_back(scene_.time().end());
     for (const double time : times)
         if (check.has_mean_from())
-            add(", mean of " + number_text(check.mean_from()) + " to " + number_text(time) + " s",
+            add(", mean of " + number_text(check.mean_from()) + " to " + number_text(time) + " s"
+                    + norm,
                 [&] { return mean_until(check, *probe, time); });
         else
-            add(" at " + number_text(time) + " s", [&] { return at_time(check, *probe, time); });
+            add(" at " + number_text(time) + " s" + norm,
+                [&] { return at_time(check, *probe, time); });
 }
 
 std::string cell(const char* pattern, double value) {

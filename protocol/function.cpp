@@ -10,6 +10,25 @@
 
 namespace duet::protocol {
 
+namespace {
+
+/// A '=' that is no part of <=, >=, == or !=.
+bool assigns(const std::string& text) {
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (text[i] != '=') {
+            continue;
+        }
+        const bool doubled = i + 1 < text.size() && text[i + 1] == '=';
+        if (!doubled && (i == 0 || std::string("<>!=").find(text[i - 1]) == std::string::npos)) {
+            return true;
+        }
+        i += doubled ? 1 : 0;
+    }
+    return false;
+}
+
+} // namespace
+
 /// The parser reads its variables from where they were bound.
 struct Function::Formula {
     double x = 0, y = 0, t = 0;
@@ -21,16 +40,28 @@ struct Function::Formula {
         parser.DefineVar("x", &x);
         parser.DefineVar("y", &y);
         parser.DefineVar("t", &t);
+        if (assigns(text)) {
+            throw std::invalid_argument("the formula '" + text
+                                        + "' holds a single '=', which would change its "
+                                          "variables; write == to compare.");
+        }
         try {
             parser.SetExpr(text);
+            int results = 0;
+            parser.Eval(results); // before GetUsedVar, which forgives unknown names
             const auto& used = parser.GetUsedVar();
             of_place = used.count("x") > 0 || used.count("y") > 0;
             of_time = used.count("t") > 0;
-            parser.Eval();
+            if (results != 1) {
+                throw std::invalid_argument("the formula '" + text + "' holds "
+                                            + std::to_string(results)
+                                            + " values where one is due; write 0.5, not 0,5.");
+            }
         } catch (const mu::Parser::exception_type& fault) {
             throw std::invalid_argument("the formula '" + text
                                         + "' cannot be read: " + fault.GetMsg()
-                                        + " It may use x, y, t, pi and the usual functions.");
+                                        + " It may use x, y, t, pi, and the operators and "
+                                          "functions of docs/case-file.md.");
         }
     }
 };
@@ -101,6 +132,14 @@ bool Function::depends_on_time() const {
 
 bool Function::depends_on_place() const {
     return formula_ && formula_->of_place;
+}
+
+bool is_zero(const v1::Function& function) {
+    return !function.has_formula() && !function.has_table() && function.number() == 0;
+}
+
+bool is_zero(const v1::VectorFunction& function) {
+    return is_zero(function.x()) && is_zero(function.y());
 }
 
 double number_of(const v1::Function& function, const char* what) {

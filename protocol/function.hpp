@@ -30,6 +30,10 @@ class Function {
     std::shared_ptr<Formula> formula_;
 };
 
+/// It is the plain number 0, or absent.
+bool is_zero(const v1::Function& function);
+bool is_zero(const v1::VectorFunction& function);
+
 /// The value of a function that is a plain number (0 if it is absent); throws
 /// std::invalid_argument saying `what` must be one otherwise.
 double number_of(const v1::Function& function, const char* what);

@@ -93,7 +93,9 @@ field_sample(const v1::Probe& probe, double time, std::span<const double> values
         break;
     }
     case v1::Probe::DIFFERENCE:
-        sample.add_value(kept.back() - kept.front());
+        if (position.front() == 0 && position.back() == length) { // both ends are in the domain
+            sample.add_value(kept.back() - kept.front());
+        }
         break;
     default:
         sample.mutable_value()->Add(kept.begin(), kept.end());

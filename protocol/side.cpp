@@ -100,7 +100,10 @@ void FluidSide::configure(const v1::Configure& configure, Exchange* exchange, v1
     previous_ = latest_;
     load_.force.assign(2 * size_.nodes, 0);
     load_.heat_flow.assign(size_.segments, 0);
+    load_before_ = load_;
     end_is_known_ = end_is_known(configure.schedule());
+    solid_lags_ = acts(configure.schedule(), v1::ROLE_FLUID).front() == Act::advance
+                  && acts(configure.schedule(), v1::ROLE_SOLID).front() == Act::advance;
     fluid_.configure(configure, chains, latest_, ready);
     ready.set_nodes(size_.nodes);
     ready.set_segments(size_.segments);
@@ -112,18 +115,23 @@ void FluidSide::receive(const Window& window, Exchange& exchange) {
     book_work(window);
 }
 
-/// The motion that has just come was made under the load that was sent last, spread over the window
-/// as the solid spreads it (SolidSide::over).
+/// The motion that has just come was made under the load that was sent last, or, where both advance
+/// at once, under the one before it; spread over the window as the solid spreads it
+/// (SolidSide::over).
 void FluidSide::book_work(const Window& window) {
-    const double ratio = load_.length / window.length;
-    for (std::size_t i = 0; i < load_.force.size(); ++i) {
-        const double work = ratio * load_.force[i] * (latest_.position[i] - previous_.position[i]);
+    const InterfaceLoad& load = solid_lags_ ? load_before_ : load_;
+    const double ratio = load.length / window.length;
+    for (std::size_t i = 0; i < load.force.size(); ++i) {
+        const double work = ratio * load.force[i] * (latest_.position[i] - previous_.position[i]);
         work_of_loads_ += work;
         exchanged_work_ += std::abs(work);
     }
 }
 
 void FluidSide::advance(const Window& window, v1::Report& report) {
+    if (solid_lags_) {
+        std::swap(load_before_, load_);
+    }
     load_.time = window.time;
     load_.length = window.length;
     if (end_is_known_) {

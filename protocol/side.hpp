@@ -72,7 +72,9 @@ class FluidSide final : public Side {
     InterfaceMotion previous_;
     InterfaceMotion latest_;
     InterfaceMotion guess_;
-    InterfaceLoad load_;                            // the last one; zero before the first
+    bool solid_lags_ = false;   // it advances with the load of the window before
+    InterfaceLoad load_;        // the last one; zero before the first
+    InterfaceLoad load_before_; // where the solid lags: the one before that
     double work_of_loads_ = 0, exchanged_work_ = 0; // J/m
 };
 

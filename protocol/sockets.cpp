@@ -30,6 +30,7 @@ ConnectionMonitor::ConnectionMonitor(zmq::context_t& context, zmq::socket_t& wat
     if (zmq_socket_monitor(watched_.handle(), address.c_str(), events) != 0)
         throw zmq::error_t();
     news_.connect(address);
+    update(); // news that comes before a first look would not wake a poll of the descriptor
 }
 
 ConnectionMonitor::~ConnectionMonitor() {

@@ -46,32 +46,33 @@ def references(requests, case):
             path, _, column = place.rpartition(":")
             if not path:
                 fail(f"{request} names no column; write PROBE=FILE:COLUMN")
-            wanted = [(probe, column)]
+            wanted = [(probe, column, "", 1.0)]
         else:
             path = request
             wanted = [
-                (check["quantity"], check["column"])
+                (check["quantity"], check["column"], check.get("along", ""), check.get("scale", 1.0))
                 for check in case.get("check", [])
                 if check.get("column") and Path(check.get("reference", "")).name == Path(path).name
             ]
             if not wanted:
                 fail(f"no check of the run's case.toml names {path}; write PROBE=FILE:COLUMN")
         table = read_table(path)
-        times = next(iter(table.values()))
-        for probe, column in wanted:
-            if column not in table:
-                fail(f"{path} has no column {column}; it has {', '.join(table)}")
-            found[probe] = (times, table[column])
+        for probe, column, along, scale in wanted:
+            for name in filter(None, (column, along)):
+                if name not in table:
+                    fail(f"{path} has no column {name}; it has {', '.join(table)}")
+            times = table[along] if along else next(iter(table.values()))
+            found[probe] = (times, scale * table[column])
     return found
 
 
 def named_histories(case, names):
-    """The references of the drawn probes that the case's checks name and that are still there."""
-    return [
-        f"{check['quantity']}={check['reference']}:{check['column']}"
+    """The reference files of the drawn probes that the case's checks name and that are still there."""
+    return {
+        check["reference"]: None
         for check in case.get("check", [])
         if check.get("column") and check["quantity"] in names and Path(check["reference"]).is_file()
-    ]
+    }
 
 
 def panels(names, case):

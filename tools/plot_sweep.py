@@ -41,7 +41,10 @@ def read(path):
         fail(f"{path} is no table of duet sweep")
     names = list(rows[0])
     checks = [name for name in names if name.startswith(ERROR)]
-    return [row for row in rows if row["ended"] == "finished"], names[: names.index(checks[0])], checks
+    finished = [row for row in rows if row["ended"] == "finished"]
+    if not checks or not finished:
+        fail(f"{path} holds no run that finished and was held against a check")
+    return finished, names[: names.index(checks[0])], checks
 
 
 def chosen(checks, wanted):

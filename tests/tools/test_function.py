@@ -23,6 +23,16 @@ class EvaluateTest(unittest.TestCase):
         table = duet.v1.Function(table=duet.v1.TimeTable(time=[1, 2], value=[10, 20]))
         self.assertEqual([duet.evaluate(table, t=t) for t in (0, 1.5, 9)], [10, 15, 20])
 
+    def test_bounds_of_several_values(self):
+        x = np.array([1.0, 5.0])
+        np.testing.assert_allclose(duet.evaluate(duet.v1.Function(formula="max(x, y, 2)"), x, 3.0), [3, 5])
+        np.testing.assert_allclose(x, [1, 5])
+
+    def test_no_finite_value_is_refused_at_a_point_too(self):
+        for text in ("1/x", "10.0^400", "(x-1)^0.5", "2 , 3"):
+            with self.subTest(text), self.assertRaises(ValueError):
+                duet.evaluate(duet.v1.Function(formula=text), 0.0)
+
     def test_what_is_no_formula_is_refused(self):
         for text in ("z + 1", "__import__('os')", "x.real", "x +", "1/x"):
             with self.subTest(text), self.assertRaises(ValueError), np.errstate(all="ignore"):

@@ -190,6 +190,7 @@ TEST(FluidBudget, EachCompartmentHasItsOwnPressureAndHeat) {
 TEST(FluidBudget, NoHeatPassesAnInsulatedBody) {
     Stirred scene;
     scene.chains[0].insulated = true;
+    std::fill(scene.state.temperature.begin(), scene.state.temperature.end(), 5.0);
     Fluid fluid(scene.config, scene.chains, scene.state);
     for (int window = 0; window < 5; ++window) {
         fluid.advance(1e-3, scene.state, scene.state);

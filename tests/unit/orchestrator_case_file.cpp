@@ -81,7 +81,13 @@ TEST(CaseFile, AFunctionThatCannotBeReadIsSaid) {
     EXPECT_NE(with("{ time = [1, 0], value = [1, 2] }").find("must rise"), std::string::npos);
     EXPECT_NE(with("{ time = [0, 1], value = [1] }").find("as many values"), std::string::npos);
     EXPECT_NE(with("{ times = [0, 1] }").find("two arrays of numbers"), std::string::npos);
-    EXPECT_NE(with("{ file = \"no.csv\" }").find("does not exist"), std::string::npos);
+    EXPECT_NE(with("{ file = \"no.csv\", column = \"T\" }").find("does not exist"),
+              std::string::npos);
+    EXPECT_NE(with("{ file = \"no.csv\" }").find("which column"), std::string::npos);
+    EXPECT_NE(with("{ file = \"no.csv\", colum = \"T\" }").find("unknown key 'colum'"),
+              std::string::npos);
+    EXPECT_NE(with("{ time = [0], value = [1], foo = 1 }").find("unknown key 'foo'"),
+              std::string::npos);
     EXPECT_NE(with("inf").find("finite"), std::string::npos);
     EXPECT_NE(with("true").find("must be a number, a formula"), std::string::npos);
 }
@@ -295,7 +301,7 @@ void randomise(Message& m, std::mt19937& random) {
                                     : r.SetDouble(&m, &field, value);
                 break;
             case Kind::whole_number:
-                r.SetUInt32(&m, &field, static_cast<std::uint32_t>(random() | 2U));
+                r.SetUInt32(&m, &field, static_cast<std::uint32_t>(random() % 65536 | 2U));
                 break;
             case Kind::boolean:
                 r.SetBool(&m, &field, random() % 2 == 0);

@@ -93,7 +93,7 @@ TEST_F(Verify, OverTime) {
     EXPECT_DOUBLE_EQ(only().error, std::sqrt((0.25 + 1) / 2));
     given_.scene.mutable_check(0)->set_norm(v1::Check::MAXIMUM);
     EXPECT_EQ(only().error, 1);
-    EXPECT_EQ(only().quantity, "scalar over time");
+    EXPECT_EQ(only().quantity, "scalar over time, maximum");
 }
 
 TEST_F(Verify, OverTimeFromATimeOn) {

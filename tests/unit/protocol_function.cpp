@@ -63,6 +63,9 @@ TEST(Function, WhatCannotBeReadIsRefused) {
     EXPECT_THROW(formula("x +"), std::invalid_argument);
     EXPECT_THROW(formula("z"), std::invalid_argument);
     EXPECT_THROW(formula(""), std::invalid_argument);
+    EXPECT_THROW(formula("x = 3"), std::invalid_argument);
+    EXPECT_THROW(formula("300, 400"), std::invalid_argument);
+    EXPECT_EQ(formula("(x <= 1) + (x >= 1) + (x == 1) + (x != 1)")(1, 0, 0), 3);
     EXPECT_THROW(Function(table({}, {})), std::invalid_argument);
     EXPECT_THROW(Function(table({0, 1}, {1})), std::invalid_argument);
     EXPECT_THROW(Function(table({1, 1}, {1, 2})), std::invalid_argument);

@@ -55,7 +55,7 @@ TEST(FluidCavity, NusseltNumberAndVelocities) {
         umax += u / samples;
         vmax += v / samples;
     }
-    // Measured -0.1, -0.7 and -1.6 % at this spacing, falling with its square.
+    // Measured -0.1, -0.7 and -1.6 % at this spacing.
     EXPECT_NEAR(nusselt, 4.5216, 0.005 * 4.5216);
     EXPECT_NEAR(umax, 34.741, 0.015 * 34.741);
     EXPECT_NEAR(vmax, 68.639, 0.025 * 68.639);

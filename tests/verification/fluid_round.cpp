@@ -100,7 +100,7 @@ TEST(FluidRound, PoiseuilleFlowInAnAnnulus) {
     const auto exact = [&](double r) { return A * r + B / r - r * r / 3; };
     EXPECT_NEAR(exact(1), 0, 1e-15);
     EXPECT_NEAR(exact(0.5), 0, 1e-15);
-    EXPECT_LT(swirl_error(fluid, exact), 0.02 * exact(0.75)) << "twenty spacings across: ten";
+    EXPECT_LT(swirl_error(fluid, exact), 0.02 * exact(0.75)) << "ten spacings across the gap";
 }
 
 /// The torque that the turning wall of an annulus passes on to its hub: 4 pi mu w a^2

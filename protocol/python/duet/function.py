@@ -1,5 +1,6 @@
 """The scene's functions of place and time (duet.v1.Function)."""
 
+import functools
 import re
 
 import numpy as np
@@ -7,7 +8,8 @@ import numpy as np
 _NAMES = {name: getattr(np, name) for name in
           ("sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "log10", "sqrt", "abs", "sign", "rint", "pi")}
 _NAMES |= {"asin": np.arcsin, "acos": np.arccos, "atan": np.arctan, "atan2": np.arctan2, "ln": np.log,
-           "min": np.minimum, "max": np.maximum}
+           "min": lambda *values: functools.reduce(np.minimum, values),
+           "max": lambda *values: functools.reduce(np.maximum, values)}
 
 
 def evaluate(function, x=0.0, y=0.0, t=0.0):
@@ -26,9 +28,15 @@ def evaluate(function, x=0.0, y=0.0, t=0.0):
     if unknown or re.search(r"[^\w\s.+\-*/^(),<>=!]", text):
         raise ValueError(f"The formula '{text}' holds {', '.join(sorted(unknown)) or 'a character'} that is not known here.")
     try:
-        value = eval(text.replace("^", "**"), {"__builtins__": {}}, _NAMES | {"x": x, "y": y, "t": t})
+        with np.errstate(all="ignore"):
+            value = eval(text.replace("^", "**"), {"__builtins__": {}},
+                         _NAMES | {name: np.asarray(place, float)[()] for name, place in (("x", x), ("y", y), ("t", t))})
     except (SyntaxError, TypeError) as fault:
         raise ValueError(f"The formula '{text}' cannot be read: {fault}.") from fault
-    if not np.all(np.isfinite(value)):
+    except ArithmeticError as fault:
+        raise ValueError(f"The formula '{text}' has no finite value at t = {t}: {fault}.") from fault
+    if isinstance(value, tuple):
+        raise ValueError(f"The formula '{text}' holds several values where one is due.")
+    if np.iscomplexobj(value) or not np.all(np.isfinite(value)):
         raise ValueError(f"The formula '{text}' has no finite value somewhere at t = {t}.")
     return value

@@ -16,7 +16,7 @@ from .messages import v1
 from .sockets import Aborted, ControlLink, DataPlane
 from .solver import Error, FluidSolver, InterfaceLoad, InterfaceMotion, Window
 
-VERSION = v1.Version(major=1, minor=0)
+VERSION = v1.Version(major=2, minor=0)
 
 # What each role does in a window, in order (the table of schedule.hpp).
 RECEIVE, ADVANCE, SEND = "receive", "advance", "send"
@@ -110,7 +110,8 @@ class _FluidSide:
         self._fluid = fluid
         self._end_is_known = False
         self._previous = self._latest = InterfaceMotion.empty()
-        self._load = None
+        self._solid_lags = False  # it advances with the load of the window before
+        self._load = self._load_before = None
         self._work_of_loads = self._exchanged_work = 0.0  # J/m
 
     def configure(self, configure, codec, data, ready):
@@ -120,15 +121,19 @@ class _FluidSide:
         self._previous = self._latest
         if data is not None:
             self._load = InterfaceLoad(np.zeros((codec.nodes, 2)), np.zeros(codec.segments))
-        self._end_is_known = SCHEDULE[configure.schedule][FLUID][0] == RECEIVE
+        self._load_before = self._load
+        schedule = SCHEDULE[configure.schedule]
+        self._end_is_known = schedule[FLUID][0] == RECEIVE
+        self._solid_lags = schedule[FLUID][0] == schedule[SOLID][0] == ADVANCE
         self._fluid.configure(configure, chains, self._latest, ready)
 
     def receive(self, window, codec, data):
         self._previous, self._latest = self._latest, codec.decode_motion(window, data.receive())
-        # The motion that has just come was made under the load that was sent last, spread over the window as the solid
-        # spreads it (_SolidSide._over).
-        ratio = self._load.length / window.length
-        work = ratio * self._load.force * (self._latest.position - self._previous.position)
+        # The motion that has just come was made under the load that was sent last, or, where both advance at once, under
+        # the one before it; spread over the window as the solid spreads it (_SolidSide._over).
+        load = self._load_before if self._solid_lags else self._load
+        ratio = load.length / window.length
+        work = ratio * load.force * (self._latest.position - self._previous.position)
         self._work_of_loads += work.sum()
         self._exchanged_work += abs(work).sum()
 
@@ -136,6 +141,7 @@ class _FluidSide:
         start, end = self._previous, self._latest
         if not self._end_is_known:
             start, end = self._latest, self._predicted(window)
+        self._load_before = self._load
         self._load = self._fluid.advance(window, start, end, report)
         self._load.time, self._load.length = window.time, window.length
         report.ledger.work_of_loads = self._work_of_loads
