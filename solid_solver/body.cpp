@@ -20,6 +20,11 @@ BodyConfig checked(BodyConfig config) {
         throw std::invalid_argument("Body '" + config.name + "': " + fault.what());
     }
     const std::vector<Material> materials = config.materials();
+    if (materials.size() < config.mesh.parts()) {
+        throw std::invalid_argument(
+            "Body '" + config.name + "' has " + std::to_string(config.mesh.parts()) + " parts, but "
+            + std::to_string(materials.size()) + " materials; give one for each part, or none.");
+    }
     const bool stiff = std::all_of(
         materials.begin(), materials.end(), [](const Material& m) { return m.youngs_modulus > 0; });
     if (config.motion == Motion::deformable && !stiff) {

@@ -123,6 +123,7 @@ struct BodyConfig {
     Stepping stepping = Stepping::explicit_steps;
     double implicit_step = 0; ///< s, longest implicit step; 0: as long as the advance asked for
     Start start = Start::as_given;
+    bool insulated = false; ///< no heat passes between the body and the fluid
     std::vector<BoundaryCondition> boundary;
     std::vector<PointLoad> point_load;
     int threads = 1;
@@ -130,9 +131,10 @@ struct BodyConfig {
     const Material& material_of(std::uint32_t part) const {
         return part_material.empty() ? material : part_material[part];
     }
-    /// The materials in the order of the mesh's parts, one at least.
+    /// The material of each part of the mesh.
     std::vector<Material> materials() const {
-        return part_material.empty() ? std::vector<Material>{material} : part_material;
+        return part_material.empty() ? std::vector<Material>(mesh.parts(), material)
+                                     : part_material;
     }
 };
 

@@ -22,9 +22,11 @@ struct Equilibrium {
 Equilibrium
 find_equilibrium(Mechanics& mechanics, std::span<const double> temperature, double tolerance);
 
-/// The same by dynamic relaxation, for either description: explicit steps from rest, stopped dead
-/// whenever the kinetic energy has passed a maximum (kinetic damping; Cundall 1976). Throws
-/// std::runtime_error with a sentence if that takes more than a million steps.
+/// The same by dynamic relaxation, for either description: explicit steps from rest under the loads
+/// of the present time, stopped dead whenever the kinetic energy has passed a maximum (kinetic
+/// damping; Cundall 1976). Every stop changes the length of the steps: with one length the modes
+/// that are in phase at each stop would be caught in a cycle. Throws std::runtime_error with a
+/// sentence if that takes more than a hundred thousand steps.
 Equilibrium relax(Mechanics& mechanics, std::span<const double> temperature, double tolerance);
 
 } // namespace duet::solid

@@ -29,8 +29,10 @@ Implicit::Implicit(Heat& heat, Mechanics* mechanics) : heat_(heat), mechanics_(m
         stiffness_.emplace(*mechanics_);
         factored_displacement_.resize(2 * heat.capacity().size());
         factored_temperature_.resize(heat.capacity().size());
-        const Vector place = vector(mechanics_->position());
-        extent_ = place.maxCoeff() - place.minCoeff();
+        const auto x = mechanics_->position();
+        const Eigen::Map<const Eigen::Matrix2Xd> place(
+            x.data(), 2, static_cast<Eigen::Index>(x.size() / 2));
+        extent_ = (place.rowwise().maxCoeff() - place.rowwise().minCoeff()).norm();
     }
 }
 
@@ -39,6 +41,7 @@ bool Implicit::step(double dt) {
     dt_ = dt;
     tau_ = 0.5 * gamma * dt;
     start();
+    stage_ = gamma;
     from_entropy_ = entropy_ + tau_ * flow_;
     if (mechanics_) {
         from_u_ = displacement_ + tau_ * velocity_;
@@ -53,6 +56,7 @@ bool Implicit::step(double dt) {
     Vector flow(flow_.size());
     heat_.flow(span(first), span(flow));
     Vector received = w * (flow_ + flow);
+    stage_ = 1;
     from_entropy_ = entropy_ + received;
     if (mechanics_) {
         const Vector acceleration = (v_ - from_v_) / tau_;
@@ -114,9 +118,12 @@ bool Implicit::solve_stage() {
     return !mechanics_ || solve_motion();
 }
 
-/// C T + L = from_entropy + tau q(T), linear in T; L at hand.
+/// C T + L = from_entropy + tau q(T), linear in T; L at hand. Prescribed temperatures are on the
+/// straight way to their value at the end of the step.
 void Implicit::solve_temperature() {
-    heat_.for_prescribed([&](std::uint32_t node, double value) { t_[node] = value; });
+    heat_.for_prescribed([&](std::uint32_t node, double value) {
+        t_[node] = temperature_[node] + stage_ * (value - temperature_[node]);
+    });
     heat_.flow(span(t_), span(warming_));
     warming_ =
         from_entropy_ + tau_ * warming_ - stage_latent_ - vector(heat_.capacity()).cwiseProduct(t_);

@@ -66,6 +66,7 @@ class Implicit {
     double extent_ = 0; ///< m, of the body
     double tau_ = 0;    ///< s, of the present step
     double dt_ = 0;
+    double stage_ = 0; ///< where the stage ends, as a share of the step
 
     // At the start of the step, and the rates there.
     Vector displacement_, velocity_, acceleration_, temperature_, entropy_, latent_, flow_;

@@ -144,7 +144,7 @@ Interface wet_interface(const std::vector<BodyShape>& bodies, const std::vector<
     for (const BodyShape& body : bodies) {
         Outline outline{body.name, body.mesh, boundary_edges(*body.mesh), {}};
         for (const Edge& edge : outline.edges) {
-            outline.sides.push_back({body.mesh->node[edge.a], body.mesh->node[edge.b]});
+            outline.sides.push_back({body.place[edge.a], body.place[edge.b]});
         }
         check_inside(outline, walls, tolerance);
         check_corners(outline, walls, tolerance);

@@ -13,6 +13,7 @@ namespace duet::solid {
 struct BodyShape {
     std::string name;
     const Mesh* mesh = nullptr;
+    std::vector<Point> place; ///< m, of the nodes at the start
 };
 
 struct Interface {
@@ -36,8 +37,9 @@ struct Interface {
     std::vector<Segment> segment; ///< of all chains, in their order
 };
 
-/// The boundary edges that lie strictly inside the region are wet: an edge on the region's own
-/// boundary leans on a wall. Nodes are numbered chain by chain, chains by body and first node; a
+/// At the start, where displaced bodies may lie elsewhere than in their meshes. The boundary edges
+/// that lie strictly inside the region are wet: an edge on the region's own boundary leans on a
+/// wall. Nodes are numbered chain by chain, chains by body and first node; a
 /// closed chain starts at its lowest node, an open one at the wall it comes from.
 /// Throws std::invalid_argument with a sentence if a body leaves the region, two bodies overlap or
 /// touch, or a corner of the region lies inside an edge that is partly wet.

@@ -73,7 +73,7 @@ void Loads::hold(std::uint32_t node, int direction, const Field& value, bool vel
     } else {
         held_.insert(at, {component, place_[node], value, velocity});
     }
-    moves_ = moves_ || !value.zero();
+    moves_ = moves_ || (velocity ? !value.zero() : !value.steady());
 }
 
 void Loads::forces(double time, std::span<const double> position, std::span<double> out) const {

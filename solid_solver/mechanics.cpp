@@ -113,8 +113,23 @@ void Mechanics::set_interface_force(std::span<const double> nodal) {
     }
 }
 
-void Mechanics::stop() {
+void Mechanics::relax(double dt, std::span<const double> temperature) {
+    kick(0.5 * dt);
+    for (std::size_t c = 0; c < displacement_.size(); ++c) {
+        displacement_[c] += inverse_mass_[c] > 0 ? dt * velocity_[c] : 0;
+    }
+    place();
+    if (loads_.vary()) { // a pressure follows the motion
+        loads_.forces(time_, position_, external_);
+    }
+    elasticity_.forces(displacement_, dt, temperature, internal_);
+    kick(0.5 * dt);
+}
+
+void Mechanics::settle() {
     std::fill(velocity_.begin(), velocity_.end(), 0.0);
+    hold_velocities();
+    elasticity_.accept_latent_heat(displacement_);
 }
 
 std::vector<double> Mechanics::reaction() const {

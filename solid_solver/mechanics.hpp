@@ -36,7 +36,12 @@ class Mechanics {
     /// Forces at t + dt from the new positions and temperatures, and the other half of the kick.
     void respond(double dt, std::span<const double> temperature);
 
-    void stop(); ///< all velocities to zero
+    /// A step on the way to equilibrium: only the free components move, loads and temperature stay
+    /// those of the present time, and nothing is booked.
+    void relax(double dt, std::span<const double> temperature);
+    /// At rest where it is; held components keep the velocities that their conditions tell. What
+    /// the stretching on the way would have heated is forgotten.
+    void settle();
 
     /// (2/w) (sqrt(1 + xi^2) - xi), xi = b w/2, with the largest adiabatic frequency w at the last
     /// estimate.
@@ -94,7 +99,7 @@ class Mechanics {
 
     /// Loads that change in time are from now on those of `length` s after the present time.
     void look_ahead(double length);
-    /// Prescribed displacements or velocities that are not zero.
+    /// Some held component moves: a displacement that changes in time, or a velocity.
     bool driven() const { return loads_.moves(); }
     /// Ends an implicit step of length dt at the motion of the last evaluate, with `velocity`.
     void accept(double dt, std::span<const double> before, std::span<const double> velocity);

@@ -1,11 +1,14 @@
 #include "solid_solver/mesh.hpp"
 
+#include "solid_solver/polygon.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 #include <tuple>
+#include <utility>
 
 namespace duet::solid {
 
@@ -22,13 +25,13 @@ std::string place(const Point& point) {
 }
 
 /// One side of a triangle, as met when walking round it.
-struct Side {
+struct Walk {
     std::uint32_t low, high, triangle;
     bool forward; ///< walked from low to high
 };
 
-std::vector<Side> sorted_sides(const Mesh& mesh) {
-    std::vector<Side> sides;
+std::vector<Walk> sorted_sides(const Mesh& mesh) {
+    std::vector<Walk> sides;
     sides.reserve(3 * mesh.triangle.size());
     for (std::uint32_t e = 0; e < mesh.triangle.size(); ++e) {
         for (std::size_t i = 0; i < 3; ++i) {
@@ -36,7 +39,7 @@ std::vector<Side> sorted_sides(const Mesh& mesh) {
             sides.push_back({std::min(a, b), std::max(a, b), e, a < b});
         }
     }
-    std::sort(sides.begin(), sides.end(), [](const Side& s, const Side& t) {
+    std::sort(sides.begin(), sides.end(), [](const Walk& s, const Walk& t) {
         return std::tie(s.low, s.high, s.triangle) < std::tie(t.low, t.high, t.triangle);
     });
     return sides;
@@ -109,9 +112,9 @@ void check_duplicates(const Mesh& mesh, double tolerance) {
 }
 
 void check_edges(const Mesh& mesh) {
-    const std::vector<Side> sides = sorted_sides(mesh);
+    const std::vector<Walk> sides = sorted_sides(mesh);
     for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
-        const Side &s = sides[i], &t = sides[i + 1];
+        const Walk &s = sides[i], &t = sides[i + 1];
         if (s.low == t.low && s.high == t.high && s.forward == t.forward) {
             std::ostringstream sentence;
             sentence << "Triangles " << s.triangle << " and " << t.triangle
@@ -165,6 +168,55 @@ void check_boundary(const Mesh& mesh, double tolerance) {
     }
 }
 
+/// No piece lies over another one: boundary edges do not cross, and no triangle holds a loop of the
+/// boundary (one node of each tells, as the loops do not cross).
+void check_overlap(const Mesh& mesh, double tolerance) {
+    const auto fail = [](const Point& p) {
+        throw std::invalid_argument("The mesh lies twofold at " + place(p)
+                                    + "; its surfaces overlap without having nodes in common.");
+    };
+    std::vector<Edge> boundary = boundary_edges(mesh);
+    const auto side = [&](const Edge& e) { return Side{mesh.node[e.a], mesh.node[e.b]}; };
+    const auto left = [&](const Edge& e) {
+        return std::min(mesh.node[e.a].x(), mesh.node[e.b].x());
+    };
+    std::vector<std::uint32_t> next(mesh.node.size(), Edge::none);
+    for (const Edge& edge : boundary) {
+        next[edge.a] = edge.b;
+    }
+    std::sort(boundary.begin(), boundary.end(), [&](const Edge& e, const Edge& f) {
+        return left(e) < left(f);
+    });
+    for (std::size_t i = 0; i < boundary.size(); ++i) {
+        const Side s = side(boundary[i]);
+        const double right = std::max(s.from.x(), s.to.x());
+        for (std::size_t j = i + 1; j < boundary.size() && left(boundary[j]) <= right; ++j) {
+            if (cross(s, side(boundary[j]), tolerance)) {
+                fail(0.5 * (s.from + s.to));
+            }
+        }
+    }
+    for (const Edge& edge : boundary) {
+        if (next[edge.a] == Edge::none) {
+            continue; // a loop that has been looked at
+        }
+        for (const Triangle& t : mesh.triangle) {
+            const bool own = t[0] == edge.a || t[1] == edge.a || t[2] == edge.a;
+            const Point& p = mesh.node[edge.a];
+            double least = std::numeric_limits<double>::infinity(); // distance from the sides
+            for (std::size_t i = 0; i < 3; ++i) {
+                least = std::min(least, offset({mesh.node[t[i]], mesh.node[t[(i + 1) % 3]]}, p));
+            }
+            if (!own && least > -tolerance) {
+                fail(p);
+            }
+        }
+        for (std::uint32_t i = edge.a; next[i] != Edge::none;) {
+            i = std::exchange(next[i], Edge::none);
+        }
+    }
+}
+
 } // namespace
 
 void check_mesh(const Mesh& mesh) {
@@ -178,13 +230,14 @@ void check_mesh(const Mesh& mesh) {
     check_duplicates(mesh, tolerance);
     check_edges(mesh);
     check_boundary(mesh, tolerance);
+    check_overlap(mesh, tolerance);
 }
 
 std::vector<Edge> mesh_edges(const Mesh& mesh) {
-    const std::vector<Side> sides = sorted_sides(mesh);
+    const std::vector<Walk> sides = sorted_sides(mesh);
     std::vector<Edge> edges;
     for (std::size_t i = 0; i < sides.size(); ++i) {
-        const Side& s = sides[i];
+        const Walk& s = sides[i];
         Edge edge;
         edge.a = s.forward ? s.low : s.high;
         edge.b = s.forward ? s.high : s.low;

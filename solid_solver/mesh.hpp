@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -29,6 +30,10 @@ struct Mesh {
     std::vector<Curve> curve = {};
 
     std::uint32_t part_of(std::size_t t) const { return part.empty() ? 0 : part[t]; }
+    /// How many parts its triangles belong to; one at least.
+    std::size_t parts() const {
+        return part.empty() ? 1 : 1 + std::size_t{*std::max_element(part.begin(), part.end())};
+    }
 };
 
 /// An edge of the mesh. `triangle[0]` lies to the left of the way from `a` to `b`; a boundary edge
@@ -44,7 +49,8 @@ struct Edge {
 /// Throws std::invalid_argument with a sentence if the mesh cannot be computed with: an index out
 /// of range, a coordinate that is not finite, a triangle that is inverted or has no area, a node
 /// that no triangle uses, two nodes in the same place, an edge with more than two triangles, a node
-/// lying on an edge that it does not belong to (hanging), a boundary that meets itself in a node.
+/// lying on an edge that it does not belong to (hanging), a boundary that meets itself in a node,
+/// or pieces that overlap.
 void check_mesh(const Mesh& mesh);
 
 /// All edges, sorted by their nodes; of a mesh that check_mesh accepts.

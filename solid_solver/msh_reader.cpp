@@ -1,6 +1,7 @@
 #include "solid_solver/msh_reader.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 #include <sstream>
@@ -57,11 +58,13 @@ class MshReader {
     void read_names();
     void read_entities();
     void read_nodes();
+    void check_plane() const;
     void read_elements();
     void skip();
     void end_section();
 
-    std::string part_name(const Entity& entity) const;
+    std::vector<std::string> group_names(const Entity& entity) const;
+    std::string part_name(const Block& block, const std::vector<std::string>& wanted) const;
     void add_triangles(const Block& block, std::uint32_t part, Mesh& mesh);
     void add_curves(Mesh& mesh) const;
     std::uint32_t node(Tag tag, int line, Mesh& mesh);
@@ -72,6 +75,11 @@ class MshReader {
     std::map<Entity, std::string> group_name_;
     std::map<Entity, std::vector<Tag>> groups_of_; ///< the physical groups of an entity
     std::map<Tag, Point> place_;
+    struct {
+        Tag tag = 0;
+        int line = 0;
+        double z = 0;
+    } highest_; ///< the node farthest off the plane
     std::vector<Block> triangles_, lines_;
     std::map<Tag, std::uint32_t> index_; ///< of the nodes that the mesh uses
 };
@@ -194,16 +202,30 @@ void MshReader::read_nodes() {
             std::istringstream words = next();
             double x = 0, y = 0, z = 0;
             take(words, "the coordinates of a node", x, y, z);
-            if (z != 0) {
-                fail("node " + std::to_string(tag) + " lies at z = " + std::to_string(z)
-                     + "; a mesh of the plane has z = 0 throughout.");
+            if (std::abs(z) > std::abs(highest_.z)) {
+                highest_ = {tag, line_, z};
             }
             if (!place_.emplace(tag, Point(x, y)).second) {
                 fail("node " + std::to_string(tag) + " is defined twice.");
             }
         }
     }
+    check_plane();
     end_section();
+}
+
+/// A program may leave the rounding of its transformations in z.
+void MshReader::check_plane() const {
+    double extent = 0;
+    for (const auto& [tag, place] : place_) {
+        extent = std::max(extent, (place - place_.begin()->second).norm());
+    }
+    if (std::abs(highest_.z) > 1e-10 * extent) {
+        std::ostringstream sentence;
+        sentence << "node " << highest_.tag << " lies at z = " << highest_.z
+                 << "; a mesh of the plane has z = 0 throughout.";
+        fail(sentence.str(), highest_.line);
+    }
 }
 
 void MshReader::read_elements() {
@@ -263,15 +285,37 @@ void MshReader::end_section() {
     }
 }
 
-/// The name of the first physical group that the entity belongs to; none: "".
-std::string MshReader::part_name(const Entity& entity) const {
+/// The names of the physical groups that the entity belongs to; a group without one has its tag.
+std::vector<std::string> MshReader::group_names(const Entity& entity) const {
+    std::vector<std::string> names;
     const auto groups = groups_of_.find(entity);
     if (groups == groups_of_.end()) {
-        return "";
+        return names;
     }
-    const Tag first = groups->second.front();
-    const auto name = group_name_.find({entity.first, first});
-    return name == group_name_.end() ? std::to_string(first) : name->second;
+    for (const Tag group : groups->second) {
+        const auto name = group_name_.find({entity.first, group});
+        names.push_back(name == group_name_.end() ? std::to_string(group) : name->second);
+    }
+    return names;
+}
+
+/// The part that a surface belongs to: the one of its groups that is wanted, or the only one; none:
+/// "".
+std::string MshReader::part_name(const Block& block, const std::vector<std::string>& wanted) const {
+    const std::vector<std::string> all = group_names(block.entity);
+    std::vector<std::string> chosen;
+    for (const std::string& name : all) {
+        if (wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end()) {
+            chosen.push_back(name);
+        }
+    }
+    if (chosen.size() > 1) {
+        fail("the surface " + std::to_string(block.entity.second)
+                 + " belongs to several physical groups, '" + chosen[0] + "' and '" + chosen[1]
+                 + "' among them; name those that are to be parts of the body.",
+             block.line);
+    }
+    return !chosen.empty() ? chosen[0] : all.empty() ? "" : all[0];
 }
 
 std::uint32_t MshReader::node(Tag tag, int line, Mesh& mesh) {
@@ -307,14 +351,7 @@ void MshReader::add_triangles(const Block& block, std::uint32_t part, Mesh& mesh
 void MshReader::add_curves(Mesh& mesh) const {
     std::map<std::string, std::vector<std::array<std::uint32_t, 2>>> curves;
     for (const Block& block : lines_) {
-        const auto groups = groups_of_.find(block.entity);
-        if (groups == groups_of_.end()) {
-            continue;
-        }
-        for (const Tag group : groups->second) {
-            const auto named = group_name_.find({block.entity.first, group});
-            const std::string name =
-                named == group_name_.end() ? std::to_string(group) : named->second;
+        for (const std::string& name : group_names(block.entity)) {
             for (const auto& element : block.element) {
                 const auto a = index_.find(element[0]), b = index_.find(element[1]);
                 if (a != index_.end() && b != index_.end()) { // else on another body
@@ -332,7 +369,7 @@ Mesh MshReader::mesh(const std::vector<std::string>& wanted) {
     Mesh mesh;
     std::set<std::string> found;
     for (const Block& block : triangles_) {
-        const std::string name = part_name(block.entity);
+        const std::string name = part_name(block, wanted);
         found.insert(name);
         if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), name) == wanted.end()) {
             continue;

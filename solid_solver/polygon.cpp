@@ -6,12 +6,6 @@ namespace duet::solid {
 
 namespace {
 
-/// Signed distance of p from the line of s, positive to the left.
-double offset(const Side& s, const Point& p) {
-    const Point d = s.to - s.from, q = p - s.from;
-    return (d.x() * q.y() - d.y() * q.x()) / d.norm();
-}
-
 double distance(const Side& s, const Point& p) {
     const Point d = s.to - s.from;
     const double along = std::clamp((p - s.from).dot(d) / d.squaredNorm(), 0.0, 1.0);
@@ -19,6 +13,11 @@ double distance(const Side& s, const Point& p) {
 }
 
 } // namespace
+
+double offset(const Side& side, const Point& point) {
+    const Point d = side.to - side.from, q = point - side.from;
+    return (d.x() * q.y() - d.y() * q.x()) / d.norm();
+}
 
 Where locate(const Point& point, const std::vector<Side>& sides, double tolerance) {
     bool inside = false;

@@ -18,6 +18,9 @@ enum class Where { outside, boundary, inside };
 /// boundary is as thick as `tolerance` on either side. The loops' direction does not matter.
 Where locate(const Point& point, const std::vector<Side>& sides, double tolerance);
 
+/// Signed distance of a point from the line of a side, positive to the left of its way.
+double offset(const Side& side, const Point& point);
+
 /// True if the two sides cross in a point that is inner to both.
 bool cross(const Side& s, const Side& t, double tolerance);
 

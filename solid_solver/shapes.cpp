@@ -3,16 +3,29 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <sstream>
 #include <stdexcept>
 
 namespace duet::solid {
 
 namespace {
 
+/// More cells than any memory holds; their nodes still have numbers of 32 bits.
+constexpr double most_cells = 1e8;
+
 /// The nearest number of whole cells along a length, at least `least`.
 std::uint32_t cells(double length, double element_size, std::uint32_t least) {
     const double count = std::round(length / element_size);
-    return std::max(least, static_cast<std::uint32_t>(std::min(count, 1e9)));
+    return std::max(least, static_cast<std::uint32_t>(std::min(count, most_cells + 1)));
+}
+
+void refuse_too_many(double count, double element_size) {
+    if (count > most_cells) {
+        std::ostringstream sentence;
+        sentence << "An element size of " << element_size << " m makes " << count
+                 << " cells, more than " << most_cells << "; make it larger.";
+        throw std::invalid_argument(sentence.str());
+    }
 }
 
 Point on_circle(const Point& centre, double radius, double turn) {
@@ -28,6 +41,7 @@ Mesh rectangle_mesh(const Point& corner, double width, double height, double ele
             "A rectangle's width, height and element size must be positive.");
     }
     const std::uint32_t nx = cells(width, element_size, 1), ny = cells(height, element_size, 1);
+    refuse_too_many(static_cast<double>(nx) * ny, element_size);
     Mesh mesh;
     mesh.node.reserve((nx + 1) * (ny + 1));
     for (std::uint32_t j = 0; j <= ny; ++j) {
@@ -65,6 +79,7 @@ Mesh disc_mesh(const Point& centre, double radius, double element_size) {
         throw std::invalid_argument("A disc's radius and element size must be positive.");
     }
     const std::uint32_t rings = cells(radius, element_size, 1);
+    refuse_too_many(3.0 * rings * rings, element_size);
     Mesh mesh;
     mesh.node.push_back(centre);
     for (std::uint32_t r = 1; r <= rings; ++r) {
@@ -104,6 +119,19 @@ Mesh ring_mesh(const Point& centre, double inner_radius, double outer_radius, do
     const std::uint32_t across = cells(width, element_size, 1);
     const std::uint32_t round =
         cells(std::numbers::pi * (inner_radius + outer_radius), element_size, 6);
+    refuse_too_many(static_cast<double>(across) * round, element_size);
+    // The circles are polygons, each turned by half a pitch against its neighbours: the middle of a
+    // chord of one must stay within the corners of the next.
+    const double thickness = width / across, half_pitch = std::numbers::pi / round;
+    if (outer_radius * std::cos(half_pitch) <= outer_radius - thickness) {
+        std::ostringstream sentence;
+        sentence << "A ring of " << round << " elements round is too coarse for a thickness of "
+                 << width << " m: the chords of its outer circle would cut the inner one; make the "
+                 << "element size smaller than "
+                 << (inner_radius + outer_radius) * std::sqrt(2 * thickness / outer_radius)
+                 << " m.";
+        throw std::invalid_argument(sentence.str());
+    }
     Mesh mesh;
     for (std::uint32_t r = 0; r <= across; ++r) {
         for (std::uint32_t i = 0; i < round; ++i) {

@@ -11,7 +11,10 @@ Solid::Solid(std::vector<BodyConfig> bodies, const std::vector<Point>& region) {
     for (BodyConfig& config : bodies) {
         bodies_.emplace_back(std::move(config));
         const Body& body = bodies_.back();
-        shapes.push_back({body.config().name, &body.config().mesh});
+        shapes.push_back({body.config().name, &body.config().mesh, {}});
+        for (std::size_t i = 0; i < body.nodes(); ++i) {
+            shapes.back().place.emplace_back(body.position()[2 * i], body.position()[2 * i + 1]);
+        }
         nodal_heat_.emplace_back(body.nodes(), 0.0);
         nodal_force_.emplace_back(2 * body.nodes(), 0.0);
     }
@@ -113,6 +116,9 @@ double Solid::exchange_limit(double conductivity, double spacing) const {
         return 0;
     }
     return least_over_segments([&](const BodyConfig& body, double edge) {
+        if (body.insulated) {
+            return 0.0;
+        }
         double least = std::numeric_limits<double>::infinity();
         for (const Material& material : body.materials()) {
             least = std::min(least, material.density * material.heat_capacity);

@@ -52,8 +52,8 @@ void Participant::configure(const v1::Configure& configure,
     write_snapshot();
 
     for (const Interface::Chain& chain : solid_->interface().chain) {
-        const auto body = static_cast<int>(solid_->interface().node[chain.node[0]].body);
-        chains.push_back({chain.node, chain.closed, scene_.solid().body(body).insulated()});
+        const Body& body = solid_->bodies()[solid_->interface().node[chain.node[0]].body];
+        chains.push_back({chain.node, chain.closed, body.config().insulated});
     }
     fill(start);
     ready.set_stable_step(longest_window());

@@ -106,11 +106,13 @@ std::vector<Material> part_materials(const v1::Body& body, const BodyConfig& con
         if (part == names.end()) {
             std::string known;
             for (const std::string& name : names) {
-                known += (known.empty() ? "" : ", ") + name;
+                known += name.empty() ? "" : (known.empty() ? "" : ", ") + name;
             }
-            throw std::invalid_argument("Body '" + body.name() + "' gives a material for the part '"
-                                        + table.part() + "', which its mesh does not have; its "
-                                        + "parts are " + known + ".");
+            throw std::invalid_argument(
+                "Body '" + body.name() + "' gives a material for the part '" + table.part()
+                + "', which its mesh does not have; "
+                + (known.empty() ? "its surfaces carry no names: make them physical surfaces."
+                                 : "its parts are " + known + "."));
         }
         put_material(table, materials[static_cast<std::size_t>(part - names.begin())]);
     }
@@ -156,6 +158,7 @@ config_from_scene(const v1::Body& body, unsigned threads, const std::filesystem:
                                                                : Stepping::explicit_steps;
     config.implicit_step = body.implicit_step();
     config.start = body.start() == v1::Body::EQUILIBRIUM ? Start::equilibrium : Start::as_given;
+    config.insulated = body.insulated();
     for (const v1::Boundary& boundary : body.boundary()) {
         config.boundary.push_back(condition_from_scene(boundary));
     }

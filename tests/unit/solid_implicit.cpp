@@ -25,7 +25,7 @@ BodyConfig heated_square() {
     return config;
 }
 
-/// Body coupled strongly with its heat: C = beta^2 T0/(rho c (lambda + 2 mu)) = 1.1.
+/// Body coupled strongly with its heat: C = beta^2 T0/(rho c (lambda + 2 mu)) = 1.86.
 BodyConfig coupled_square() {
     BodyConfig config = test::steel_like(test::distorted_square(6));
     config.stepping = Stepping::implicit_steps;
@@ -140,6 +140,73 @@ TEST(SolidImplicit, AgreesWithSmallExplicitSteps) {
     }
     EXPECT_LT(error[2], 3e-3) << error[0] << ' ' << error[1] << ' ' << error[2];
     EXPECT_GT(error[0] / error[2], 9); // between order 1.6 and 2: the load is sudden
+}
+
+TEST(SolidImplicit, PrescribedTemperatureThatSwingsIsFollowedInSecondOrder) {
+    // A slab between a wall that swings and an insulated one, against explicit steps of 1e-4 s.
+    BodyConfig config = test::steel_like(rectangle_mesh({0, 0}, 1, 0.1, 0.1));
+    config.motion = Motion::fixed;
+    config.boundary = {test::side(At::left, 1, 0.1)};
+    config.boundary[0].temperature =
+        Field([](const Point&, double t) { return 300 + 10 * std::sin(3 * t); });
+    Body reference(config);
+    for (int i = 0; i < 20000; ++i) {
+        reference.step(1e-4);
+    }
+    config.stepping = Stepping::implicit_steps;
+    std::vector<double> error;
+    for (const double dt : {0.2, 0.1, 0.05}) {
+        config.implicit_step = dt;
+        Body body(config);
+        body.advance(2);
+        double largest = 0;
+        for (std::size_t i = 0; i < body.nodes(); ++i) {
+            largest =
+                std::max(largest, std::abs(body.temperature()[i] - reference.temperature()[i]));
+        }
+        error.push_back(largest);
+    }
+    EXPECT_LT(error[2], 0.05) << error[0] << ' ' << error[1] << ' ' << error[2];
+    EXPECT_GT(error[0] / error[1], 3.3); // order 2; 2 where stages see the value of the step's end
+    EXPECT_GT(error[1] / error[2], 3.3);
+}
+
+TEST(SolidImplicit, ABodyFarFromTheOriginIsSolvedAsWell) {
+    // What a position can hold goes by the body's size, not by where it is. Places of a power of
+    // two: the gradients have the same bits.
+    std::vector<double> tip;
+    for (const double y : {0.0, 1048576.0}) {
+        BodyConfig config = coupled_square();
+        config.mesh = rectangle_mesh({0, y}, 1, 1, 0.25);
+        config.boundary[0].from.y() += y;
+        config.boundary[0].to.y() += y;
+        Body body(config);
+        body.set_interface_load(std::vector<double>(body.nodes(), 0.0), pull(body, 1e-6));
+        body.advance(0.5);
+        tip.push_back(body.mechanics()->displacement()[2 * body.nodes() - 2]);
+    }
+    EXPECT_GT(tip[0], 1e-8);
+    EXPECT_NEAR(tip[1], tip[0], 1e-9 * tip[0]);
+}
+
+TEST(SolidImplicit, AConstantDisplacementDoesNotForbidImplicitSteps) {
+    // Stretched by a hundredth and let go: with the heat conducted away it rests in the linear
+    // answer of a bar between rollers.
+    BodyConfig config = coupled_square();
+    config.thermoelastic_heating = false;
+    config.stiffness_damping = 1;
+    config.boundary = {test::side(At::left), test::side(At::right), test::side(At::bottom)};
+    config.boundary[0].displacement_x = 0.0;
+    config.boundary[1].displacement_x = 0.01;
+    config.boundary[2].fixed_y = true;
+    Body body(config);
+    for (int i = 0; i < 40; ++i) {
+        body.advance(5);
+    }
+    // Plane strain, free at the top: E_yy = -nu/(1 - nu) E_xx with E = g + g^2/2.
+    const double exx = 0.01 + 0.5e-4, eyy = -0.3 / 0.7 * exx;
+    const double lift = std::sqrt(1 + 2 * eyy) - 1;
+    EXPECT_NEAR(body.mechanics()->displacement()[2 * body.nodes() - 1], lift, 1e-9);
 }
 
 TEST(SolidImplicit, LongStepsOfAStronglyCoupledBodyAreStable) {

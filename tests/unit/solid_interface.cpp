@@ -1,5 +1,6 @@
 #include "solid_solver/interface.hpp"
 #include "solid_solver/shapes.hpp"
+#include "solid_solver/solid.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +14,7 @@ const std::vector<Point> cavity{{0, 0}, {10, 0}, {10, 10}, {0, 10}};
 Interface interface_of(const std::vector<Mesh>& meshes, const std::vector<Point>& region = cavity) {
     std::vector<BodyShape> shapes;
     for (const Mesh& mesh : meshes) {
-        shapes.push_back({"body" + std::to_string(shapes.size()), &mesh});
+        shapes.push_back({"body" + std::to_string(shapes.size()), &mesh, mesh.node});
     }
     return wet_interface(shapes, region);
 }
@@ -114,6 +115,23 @@ TEST(SolidInterface, NonConvexRegion) {
     const std::vector<Point> notch{
         {0, 0}, {10, 0}, {10, 10}, {5.3, 10}, {5.2, 2}, {5.1, 10}, {0, 10}};
     EXPECT_NE(refusal({rectangle_mesh({4, 4}, 2, 2, 1)}, notch), "");
+}
+
+TEST(SolidInterface, BodiesCountWhereTheyStart) {
+    BodyConfig body;
+    body.name = "paddle";
+    body.mesh = rectangle_mesh({0, 4}, 3, 2, 0.5); // leans on the left wall until it is moved
+    body.motion = Motion::prescribed;
+    body.rigid_motion.displacement = Point(2, 0);
+    EXPECT_TRUE(Solid({body}, cavity).interface().chain.at(0).closed);
+    body.rigid_motion.displacement = Point(8, 0);
+    EXPECT_THROW(Solid({body}, cavity), std::invalid_argument);
+    body.motion = Motion::deformable;
+    body.material.youngs_modulus = 1;
+    body.initial_displacement = Point(7, 0); // against the right wall
+    const Interface moved = Solid({body}, cavity).interface();
+    EXPECT_EQ(moved.segment.size(), 6u + 4 + 6);
+    EXPECT_EQ(body.mesh.node[moved.node.front().node], Point(3, 6));
 }
 
 TEST(SolidInterface, EachFaultIsNamed) {

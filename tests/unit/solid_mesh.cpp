@@ -85,6 +85,29 @@ TEST(SolidMesh, EachFaultIsNamed) {
     EXPECT_NE(refusal({}).find("no triangles"), std::string::npos);
 }
 
+TEST(SolidMesh, PiecesThatOverlapAreRefused) {
+    // Two squares without a common node: side by side, across each other, one within the other,
+    // and one with a corner on the other's diagonal.
+    const auto both = [](Mesh mesh, const Mesh& other) {
+        const auto first = static_cast<std::uint32_t>(mesh.node.size());
+        mesh.node.insert(mesh.node.end(), other.node.begin(), other.node.end());
+        for (const Triangle& t : other.triangle) {
+            mesh.triangle.push_back({t[0] + first, t[1] + first, t[2] + first});
+        }
+        return refusal(mesh);
+    };
+    const Mesh unit = rectangle_mesh({0, 0}, 1, 1, 1);
+    EXPECT_EQ(both(unit, rectangle_mesh({1.5, 0}, 1, 1, 0.5)), "");
+    for (const Mesh& other : {rectangle_mesh({0.3, 0.45}, 1, 1, 0.5),
+                              rectangle_mesh({-0.5, 0.2}, 2, 0.3, 2),
+                              rectangle_mesh({0.3, 0.45}, 0.1, 0.1, 0.1),
+                              rectangle_mesh({-1.3, -2.1}, 4, 4, 1),
+                              rectangle_mesh({0.5, 0.5}, 0.25, 0.25, 0.25)}) {
+        EXPECT_NE(both(unit, other).find("overlap"), std::string::npos) << both(unit, other);
+        EXPECT_NE(both(other, unit).find("overlap"), std::string::npos) << both(other, unit);
+    }
+}
+
 TEST(SolidMesh, HangingNodesAndTouchingCornersAreRefused) {
     // The lower triangle has the whole side, the upper two have a half each.
     const Mesh hanging{{{0, 0}, {2, 0}, {1, 0}, {1, 1}, {1, -1}},

@@ -107,6 +107,35 @@ TEST(SolidMsh, PartsAndCurvesKeepTheirNames) {
     EXPECT_EQ(mesh.node[b], Point(0, 1));
 }
 
+TEST(SolidMsh, ABodyOfSeveralPartsHasAMaterialForEach) {
+    BodyConfig body;
+    body.name = "plate";
+    body.mesh = read(two_squares());
+    body.material.density = 3;
+    EXPECT_EQ(body.materials().size(), 2u);
+    EXPECT_EQ(body.materials().at(1).density, 3);
+    EXPECT_NEAR(Body(body).mass(), 6, 1e-14);
+    body.part_material = {Material{}};
+    EXPECT_THROW(Body{body}, std::invalid_argument);
+}
+
+TEST(SolidMsh, ASurfaceOfSeveralGroupsBelongsToTheOneAskedFor) {
+    // The left square is "steel" and "brass".
+    const std::string both = with("1 0 0 0 1 1 0 1 3 0", "1 0 0 0 1 1 0 2 3 4 0");
+    EXPECT_EQ(read(both, {"steel"}).triangle.size(), 2u);
+    const Mesh brass = read(both, {"brass"});
+    EXPECT_EQ(brass.triangle.size(), 4u);
+    EXPECT_EQ(brass.part_name, std::vector<std::string>{"brass"});
+    EXPECT_NE(refusal(both).find("line 46: the surface 1 belongs to several"), std::string::npos)
+        << refusal(both);
+    EXPECT_NE(refusal(both, {"steel", "brass"}), "");
+}
+
+TEST(SolidMsh, RoundingOffThePlaneIsNone) {
+    EXPECT_EQ(refusal(with("2 1 0\n$EndNodes", "2 1 -1e-11\n$EndNodes")), "");
+    EXPECT_NE(refusal(with("2 1 0\n$EndNodes", "2 1 -1e-8\n$EndNodes")), "");
+}
+
 TEST(SolidMsh, OnePartMakesABodyOfItsOwn) {
     const Mesh mesh = read(two_squares(), {"brass"});
     EXPECT_NO_THROW(check_mesh(mesh));
@@ -209,6 +238,31 @@ TEST(SolidShapes, DiscAndRingCoverTheirAreas) {
     EXPECT_EQ(boundary_edges(ring).size(), 2u * 47);
     EXPECT_THROW(ring_mesh({0, 0}, 2, 1, 0.1), std::invalid_argument);
     EXPECT_THROW(disc_mesh({0, 0}, 0, 0.1), std::invalid_argument);
+}
+
+TEST(SolidShapes, WhatCannotBeMeshedIsToldBeforeItIsTried) {
+    const auto refusal = [](const auto& make) -> std::string {
+        try {
+            check_mesh(make());
+        } catch (const std::invalid_argument& fault) {
+            return fault.what();
+        }
+        return "";
+    };
+    const auto expect = [](const std::string& fault, const std::string& words) {
+        EXPECT_NE(fault.find(words), std::string::npos) << fault;
+    };
+    // 65536 x 65536 cells would wrap round to none in 32 bits.
+    expect(refusal([] { return rectangle_mesh({0, 0}, 1, 1, 1.0 / 65536); }), "4.29497e+09 cells");
+    expect(refusal([] { return disc_mesh({0, 0}, 1, 1e-5); }), "make it larger");
+    expect(refusal([] { return ring_mesh({0, 0}, 0.5, 1, 1e-5); }), "make it larger");
+    // Sixteen elements round: arcs 1 - cos(pi/16) = 0.019 high.
+    const auto ring = [](double thickness, double size) {
+        return [=] { return ring_mesh({0, 0}, 1 - thickness, 1, size); };
+    };
+    expect(refusal(ring(0.018, 0.39)), "make the element size smaller than 0.37");
+    EXPECT_EQ(refusal(ring(0.018, 0.37)), "");
+    EXPECT_EQ(refusal(ring(0.021, 0.39)), "");
 }
 
 } // namespace

@@ -122,6 +122,9 @@ TEST(SolidExchange, LimitsOfTheWindow) {
     EXPECT_NEAR(solid.exchange_limit(0.6, 0.2), 2 * 3 * 0.05 * 0.1 / 0.6, 1e-15);
     EXPECT_NEAR(solid.added_mass_limit(1.5, 20), 2 * 0.1 / (1.5 * 20), 1e-15);
     EXPECT_EQ(solid.exchange_limit(0, 0.2), 0);
+    bodies[0].insulated = true;
+    EXPECT_EQ(Solid(bodies, cavity).exchange_limit(0.6, 0.2), 0);
+    EXPECT_GT(Solid(bodies, cavity).added_mass_limit(1.5, 20), 0);
     EXPECT_EQ(Solid(bodies, {}).exchange_limit(0.6, 0.2), 0);
 }
 
