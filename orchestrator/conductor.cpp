@@ -87,6 +87,11 @@ void Conductor::gather() {
     gathering_ = false;
     Player* solid = player_of(v1::ROLE_SOLID);
     Player* fluid = player_of(v1::ROLE_FLUID);
+    if (solid && fluid && solid->model.nodes() == 0)
+        throw Failure(name_of(*solid),
+                      solid->now(),
+                      "and the fluid do not touch: no boundary of a body lies inside the fluid's "
+                      "region; move the bodies, or leave one of the two out of the case");
     audit_.start(solid ? &solid->ledger : nullptr, fluid ? &fluid->ledger : nullptr);
     std::vector<v1::Sample> samples;
     for (const Player& player : players_)

@@ -23,6 +23,22 @@ auto reported(const Work& work) {
     }
 }
 
+/// The corners of the cavity; a round one as a polygon, whose corners do not matter to a body that
+/// lies inside it.
+std::vector<Point> region_of(const v1::Fluid& fluid) {
+    std::vector<Point> region;
+    for (const v1::Vector& corner : fluid.region()) {
+        region.emplace_back(corner.x(), corner.y());
+    }
+    constexpr int sides = 720;
+    for (int i = 0; fluid.has_disc() && i < sides; ++i) {
+        const double angle = 2 * std::acos(-1.0) * i / sides;
+        region.emplace_back(fluid.disc().centre().x() + fluid.disc().radius() * std::cos(angle),
+                            fluid.disc().centre().y() + fluid.disc().radius() * std::sin(angle));
+    }
+    return region;
+}
+
 } // namespace
 
 std::string Participant::name() const {
@@ -34,10 +50,7 @@ void Participant::configure(const v1::Configure& configure,
                             std::vector<protocol::Chain>& chains,
                             protocol::InterfaceMotion& start) {
     scene_ = configure.scene();
-    std::vector<Point> region;
-    for (const v1::Vector& corner : scene_.fluid().region()) {
-        region.emplace_back(corner.x(), corner.y());
-    }
+    const std::vector<Point> region = region_of(scene_.fluid());
     reported([&] {
         std::vector<BodyConfig> bodies;
         for (const v1::Body& body : scene_.solid().body()) {
