@@ -69,6 +69,7 @@ void Boundary::build() {
         add_chain(chain);
     }
     add_walls();
+    bend_cells();
     register_faces();
     set_walls(time_);
 }
@@ -172,7 +173,8 @@ void Boundary::add_cells(std::uint32_t segment, const Face& face) {
                           face.normal,
                           face.heated,
                           starts_face ? none : index - 1,
-                          none});
+                          none,
+                          0});
     }
 }
 
@@ -190,6 +192,28 @@ void Boundary::link(const Segment& from, const Segment& to) {
     if (dot(cells_[before].normal, cells_[to.first_cell].normal) > smooth) {
         cells_[before].after = to.first_cell;
         cells_[to.first_cell].before = before;
+    }
+}
+
+/// A face takes half of the turn at each of its ends; one that ends in a corner bends on as at its
+/// other end.
+void Boundary::bend_cells() {
+    for (const Face& face : faces_) {
+        const Segment& last = segments_[face.first + face.segments - 1];
+        const std::uint32_t start = segments_[face.first].first_cell;
+        const std::uint32_t end = last.first_cell + last.cells;
+        double turn = 0;
+        int joints = 0;
+        for (const std::uint32_t next : {cells_[start].before, cells_[end - 1].after}) {
+            if (next != none) {
+                const double across = cross(cells_[next].normal, face.normal);
+                turn += std::asin(next == cells_[start].before ? across : -across);
+                ++joints;
+            }
+        }
+        for (std::uint32_t c = start; c < end && joints > 0; ++c) {
+            cells_[c].curvature = -turn / (joints * face.length);
+        }
     }
 }
 

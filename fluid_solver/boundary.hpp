@@ -49,6 +49,7 @@ struct WallCell {
     Vec2 normal; ///< from the fluid into the wall
     bool heated = false;
     std::uint32_t before = none, after = none; ///< neighbours, unless a corner lies between
+    double curvature = 0; ///< div n, 1/m: positive where the fluid lies inside the bend
 };
 
 /// A run of faces as seen by one particle: its tangent at the foot point, as long as the run.
@@ -166,6 +167,7 @@ class Boundary {
     void add_cells(std::uint32_t segment, const Face& face);
     void link_cells(const Chain& chain, std::uint32_t first);
     void link(const Segment& from, const Segment& to);
+    void bend_cells();
     void register_faces();
 
     double spacing_, support_;

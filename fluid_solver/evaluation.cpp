@@ -322,6 +322,7 @@ void Evaluation::beside_walls(std::size_t a,
 }
 
 void Evaluation::take_samples(std::size_t a,
+                              const Particles& particles,
                               const Boundary& boundary,
                               const std::vector<Contact>& contacts,
                               std::vector<WallSample>& out) const {
@@ -334,6 +335,7 @@ void Evaluation::take_samples(std::size_t a,
                            contact.distance,
                            (point.along - boundary.cells()[cell].centre) * point.segment->length,
                            point.value,
+                           load(particles.fields[a]),
                            dot(point.acceleration, contact.normal)});
         }
     }
@@ -365,7 +367,7 @@ bool Evaluation::run_chunk(std::size_t chunk,
                 interior(a, particles, scene, s, work);
             } else {
                 beside_walls(a, particles, scene, s, work);
-                take_samples(a, scene.boundary, work.contacts, samples[chunk]);
+                take_samples(a, particles, scene.boundary, work.contacts, samples[chunk]);
             }
         }
     }

@@ -40,6 +40,7 @@ struct WallSample {
     double distance;
     double along;        ///< of the foot point beyond the cell's middle, m
     Lanes wall;          ///< u, v, 0, T of the wall at the foot point
+    Lanes fields;        ///< of the particle when it was evaluated: what diffusion was given
     double acceleration; ///< of the wall along its normal
 };
 
@@ -121,6 +122,7 @@ class Evaluation {
                       const Work& work);
     void store_diffusion(std::size_t a, const EvaluationInput& input, const Four& laplacian);
     void take_samples(std::size_t a,
+                      const Particles& particles,
                       const Boundary& boundary,
                       const std::vector<Contact>& contacts,
                       std::vector<WallSample>& out) const;

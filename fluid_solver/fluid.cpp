@@ -367,7 +367,7 @@ void Fluid::Implementation::book(double dt) {
         evaluation_,
         particles,
         hydrostatics_,
-        {config.conductivity, config.density * config.kinematic_viscosity, config.density},
+        {config.conductivity, config.kinematic_viscosity, config.density, config.heat_capacity},
         given_force_);
     book_body_force(dt);
     passed_heat_.assign(compartments, 0);

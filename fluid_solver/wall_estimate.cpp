@@ -12,7 +12,8 @@ void WallEstimate::Sums::add(double share, double ahead, const Sums& other) {
     wdd += share * other.wdd;
     wp += share * (other.wp + ahead * other.wp_along);
     wp_along += share * other.wp_along;
-    wd += share * other.wd;
+    wddd += share * other.wddd;
+    rise += share * other.rise;
 }
 
 /// Sums over the cells within half_width of the middle of `cell` along the wall, up to the next
@@ -72,17 +73,27 @@ double known_slope(const Boundary& boundary, const WallCell& cell) {
 
 } // namespace
 
-/// With w = 1 - d/(1.5 dx): flux k sum w d (T_w - T_a) / sum w d^2, the viscous traction likewise
-/// from the velocity; the pressure is extrapolated with its known slope rho (b - a_wall).n across
-/// the wall and its gradient along the wall. Along the wall (grad u + grad u^T).n is du_t/dn +
-/// dw_n/ds, w the wall's own velocity; across it it is -2 dw_t/ds, nothing on a wall that does not
-/// stretch.
+/// With w = 1 - d/(1.5 dx), curvature K = div n and lap f = f_nn + K f_n, the slope along n is
+///     sum w d (f_w - f_a + bend_a d^2) / sum w d^2 (1 + K d/2).
+/// At the wall pressure and forces bend the velocity, as they do next to it: bend = lap u / 2. The
+/// temperature has no such source there, and a flow that carries heat only with d^2: so it departs
+/// from its slope with d^4, and bend = lap T / 12. (A half would be exact where the wall's
+/// temperature changes, and six times too much in a layer that does not.) The pressure is
+/// extrapolated with its known slope rho (b - a_wall).n across the wall and its gradient along the
+/// wall. Along the wall (grad u + grad u^T).n is du_t/dn + dw_n/ds, w the wall's own velocity;
+/// across it it is -2 dw_t/ds, nothing on a wall that does not stretch.
 void WallEstimate::run(const Boundary& boundary,
                        const Evaluation& evaluation,
                        const Particles& particles,
                        const Hydrostatics& hydrostatics,
                        const WallMaterial& material,
                        std::span<const Vec2> body_force) {
+    const auto per = [](double factor, double diffusivity) {
+        return diffusivity > 0 ? factor / diffusivity : 0;
+    };
+    const double bend_u = per(0.5, material.kinematic_viscosity);
+    const double bend_T =
+        per(material.density * material.heat_capacity / 12, material.conductivity);
     sums_.assign(boundary.cells().size(), {});
     for (const auto& chunk : evaluation.samples) {
         for (const WallSample& sample : chunk) {
@@ -93,6 +104,9 @@ void WallEstimate::run(const Boundary& boundary,
             const std::uint16_t compartment = particles.compartment[a];
             const double p = f.p + hydrostatics.pressure(particles.position(a), compartment);
             const Vec2 extra = body_force.empty() ? Vec2{} : body_force[a];
+            const Vec2 viscous = evaluation.viscous[a] - extra;
+            const Lanes bend{
+                bend_u * viscous.x, bend_u * viscous.y, 0, bend_T * evaluation.heating[a]};
             const double across = dot(hydrostatics.force(f.T) + extra, n) - sample.acceleration;
             const Vec2 gradient = Vec2{evaluation.slope_x[a].p, evaluation.slope_y[a].p}
                                   + hydrostatics.gradient(compartment);
@@ -100,7 +114,8 @@ void WallEstimate::run(const Boundary& boundary,
             Sums& s = sums_[sample.cell];
             s.w += w;
             s.wdd += w * d * d;
-            s.wd += (w * d) * (sample.wall - load(f));
+            s.wddd += w * d * d * d;
+            s.rise += (w * d) * (sample.wall - sample.fields + (d * d) * bend);
             s.wp += w * (p + material.density * across * d - along * sample.along);
             s.wp_along += w * along;
             s.compartment = compartment;
@@ -117,15 +132,16 @@ void WallEstimate::run(const Boundary& boundary,
             continue; // a bay too narrow to hold a particle passes nothing
         }
         const WallCell& cell = boundary.cells()[c];
-        const double steepness = 1 / s.wdd;
-        const Vec2 slope{steepness * s.wd[0], steepness * s.wd[1]}; // of the velocity, towards n
-        const Vec2 tangent{cell.normal.y, -cell.normal.x};          // in the direction of travel
-        const double shear = dot(slope, tangent) + turn_of_wall(boundary, c);
+        const double bent = s.wdd + 0.5 * cell.curvature * s.wddd;
+        const Vec2 tangent{cell.normal.y, -cell.normal.x}; // in the direction of travel
+        // What turns with the wall is not sheared: the bend is that of the rest.
+        const double turning = s.wdd * turn_of_wall(boundary, c);
+        const double shear = (dot({s.rise[0], s.rise[1]}, tangent) + turning) / bent;
         loads_[c].compartment = s.compartment;
-        const double slope_T = cell.heated ? steepness * s.wd[3] : known_slope(boundary, cell);
+        const double slope_T = cell.heated ? s.rise[3] / bent : known_slope(boundary, cell);
         loads_[c].heat_flux = material.conductivity * slope_T;
-        loads_[c].traction =
-            (s.wp / s.w) * cell.normal - (material.dynamic_viscosity * shear) * tangent;
+        loads_[c].traction = (s.wp / s.w) * cell.normal
+                             - (material.density * material.kinematic_viscosity * shear) * tangent;
     }
 }
 

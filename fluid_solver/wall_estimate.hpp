@@ -16,9 +16,10 @@ namespace duet::fluid {
 
 /// Material as the wall sees it.
 struct WallMaterial {
-    double conductivity = 0;      ///< W/(m K)
-    double dynamic_viscosity = 0; ///< Pa s
-    double density = 0;           ///< kg/m3
+    double conductivity = 0;        ///< W/(m K)
+    double kinematic_viscosity = 0; ///< m2/s
+    double density = 0;             ///< kg/m3
+    double heat_capacity = 0;       ///< J/(kg K)
 };
 
 /// What the fluid does to the wall at one wall cell.
@@ -32,8 +33,9 @@ class WallEstimate {
   public:
     explicit WallEstimate(double spacing) : spacing_(spacing) {}
 
-    /// Loads of all wall cells, from the samples of the last evaluation and the present fields.
-    /// `body_force` by particle, m/s2, beside the buoyancy; empty without one.
+    /// Loads of all wall cells in the middle of a step of `dt` seconds: from the samples of the
+    /// last evaluation, the velocities after it, and the temperatures before. `body_force` by
+    /// particle, m/s2, beside the buoyancy; empty without one.
     void run(const Boundary& boundary,
              const Evaluation& evaluation,
              const Particles& particles,
@@ -46,10 +48,10 @@ class WallEstimate {
   private:
     /// Sums over the samples of one cell, or of a stretch of cells.
     struct Sums {
-        double w = 0, wdd = 0; ///< sum w, w d^2
-        Lanes wd{};            ///< sum w d (f_wall - f_a)
-        double wp = 0;         ///< sum w p_wall, each p_wall taken to the middle of the cell
-        double wp_along = 0;   ///< sum w dp/ds along the wall
+        double w = 0, wdd = 0, wddd = 0; ///< sum w, w d^2, w d^3
+        Lanes rise{};                    ///< sum w d (f_wall - f_a + bend d^2)
+        double wp = 0;       ///< sum w p_wall, each p_wall taken to the middle of the cell
+        double wp_along = 0; ///< sum w dp/ds along the wall
         std::uint16_t compartment = 0;
         /// Adds a share of another cell's sums; this one's middle lies `ahead` of the other's.
         void add(double share, double ahead, const Sums& other);
