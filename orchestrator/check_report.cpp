@@ -259,6 +259,7 @@ void describe_solid(const v1::Scene& scene, const Estimate& e, std::string& out)
                + "; mechanics: "
                + (body.motion() == v1::Body::DEFORMABLE   ? "thermo-elastic, finite deformation"
                   : body.motion() == v1::Body::PRESCRIBED ? "left out (rigid, moved as prescribed)"
+                  : body.motion() == v1::Body::RIGID      ? "rigid, moved by the forces on it"
                                                           : "left out (fixed and rigid)")
                + "; heat: "
                + (heats_itself(body) ? "conduction and thermo-elastic heating"

@@ -220,7 +220,7 @@ void Checker::check_wall(const v1::Wall& wall, const std::string& path) {
         problem(path + ".temperature",
                 path + " prescribes a temperature and a heat flux; keep one of them");
     else if (scene_.fluid().conductivity() == 0
-        && (wall.has_temperature() || !is_zero(wall.heat_flux())))
+             && (wall.has_temperature() || !is_zero(wall.heat_flux())))
         problem(path,
                 "a fluid without 'conductivity' takes no heat from the wall '" + wall.name()
                     + "'; give fluid.conductivity, or leave the wall's heat out");
@@ -313,16 +313,22 @@ void Checker::check_bodies() {
 
 void Checker::check_body(const v1::Body& body, const std::string& path) {
     check_shape(body, path);
-    if (body.motion() != v1::Body::DEFORMABLE && !is_zero(body.initial_velocity()))
+    const bool loaded = body.motion() == v1::Body::DEFORMABLE || body.motion() == v1::Body::RIGID;
+    if (!loaded && !is_zero(body.initial_velocity()))
         problem(path + ".initial_velocity",
-                "only a body with motion = \"deformable\" has an initial velocity; a prescribed "
-                "motion has that of its displacement");
+                "only a body with motion = \"deformable\" or \"rigid\" has an initial velocity; a "
+                "prescribed motion has that of its displacement");
     if (body.motion() != v1::Body::DEFORMABLE && !is_zero(body.initial_displacement()))
         problem(path + ".initial_displacement",
                 "only a body with motion = \"deformable\" has an initial displacement; put the "
                 "body where it starts");
-    if (body.motion() != v1::Body::DEFORMABLE && body.point_load_size() > 0)
-        problem(path + ".point_load", "only a body with motion = \"deformable\" takes point loads");
+    if (!loaded && body.point_load_size() > 0)
+        problem(path + ".point_load",
+                "only a body with motion = \"deformable\" or \"rigid\" takes point loads");
+    if (body.has_support() && body.motion() != v1::Body::RIGID)
+        problem(path + ".support",
+                "only a body with motion = \"rigid\" has a support; hold a deformable one by its "
+                "boundaries");
     check_motion(body, path);
     if (body.motion() == v1::Body::DEFORMABLE && !body.has_youngs_modulus())
         problem(path, "the deformable body '" + body.name() + "' lacks the key 'youngs_modulus'");
@@ -485,10 +491,15 @@ void Checker::check_conditions(const v1::Boundary& boundary,
     };
     once("x", boundary.fixed_x(), boundary.has_displacement_x(), boundary.has_velocity_x());
     once("y", boundary.fixed_y(), boundary.has_displacement_y(), boundary.has_velocity_y());
-    const bool mechanical = boundary.has_displacement_x() || boundary.has_displacement_y()
-                            || boundary.has_velocity_x() || boundary.has_velocity_y()
-                            || !is_zero(boundary.traction()) || !is_zero(boundary.pressure());
-    if (mechanical && body.motion() != v1::Body::DEFORMABLE)
+    const bool moved = boundary.has_displacement_x() || boundary.has_displacement_y()
+                       || boundary.has_velocity_x() || boundary.has_velocity_y();
+    const bool loaded = !is_zero(boundary.traction()) || !is_zero(boundary.pressure());
+    const bool rigid = body.motion() == v1::Body::RIGID;
+    if (rigid && (moved || boundary.fixed_x() || boundary.fixed_y()))
+        problem(path,
+                "a body with motion = \"rigid\" is not held at its boundary; its 'support' says "
+                "what holds it");
+    else if ((moved || (loaded && !rigid)) && body.motion() != v1::Body::DEFORMABLE)
         problem(path,
                 "only a body with motion = \"deformable\" is loaded or moved at its boundary");
 }

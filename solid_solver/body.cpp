@@ -70,10 +70,13 @@ Body::Body(BodyConfig config)
     if (config_.stepping != Stepping::explicit_steps && !updated && !driven && !corrected) {
         implicit_.emplace(heat_, mechanics_ ? &*mechanics_ : nullptr);
     }
-    if (mechanics_) {
-        if (config_.start == Start::equilibrium) {
-            equilibrium_ = find_equilibrium();
-        }
+    if (mechanics_ && config_.start == Start::equilibrium) {
+        equilibrium_ = find_equilibrium();
+    }
+    if (config_.motion == Motion::rigid) {
+        rigid_.emplace(config_);
+    }
+    if (mechanics_ || rigid_) {
         return;
     }
     rest_velocity_.assign(2 * nodes(), 0.0);
@@ -103,9 +106,6 @@ void Body::move_rigidly(double length) {
         const Point v = (place(from, after) - place(from, before)) / (after - before);
         for (std::size_t d = 0; d < 2; ++d) {
             const auto k = static_cast<Eigen::Index>(d);
-            if (!rest_force_.empty()) {
-                work_ += rest_force_[2 * i + d] * (x[k] - rest_position_[2 * i + d]);
-            }
             rest_position_[2 * i + d] = x[k];
             rest_velocity_[2 * i + d] = v[k];
         }
@@ -116,8 +116,8 @@ void Body::set_interface_load(std::span<const double> heat, std::span<const doub
     heat_.set_interface_heat(heat);
     if (mechanics_) {
         mechanics_->set_interface_force(force);
-    } else {
-        rest_force_.assign(force.begin(), force.end());
+    } else if (rigid_) {
+        rigid_->set_interface_force(force);
     }
 }
 
@@ -153,6 +153,8 @@ std::uint32_t Body::advance(double length) {
         choice_ == 2 ? advance_implicitly(length) : advance_explicitly(length);
     if (config_.motion == Motion::prescribed) {
         move_rigidly(length);
+    } else if (rigid_) {
+        rigid_->advance(length);
     }
     check_finite();
     return steps;
@@ -248,11 +250,23 @@ void Body::check_finite() const {
 }
 
 std::span<const double> Body::position() const {
-    return mechanics_ ? mechanics_->position() : std::span<const double>(rest_position_);
+    return mechanics_ ? mechanics_->position()
+           : rigid_   ? rigid_->position()
+                      : std::span<const double>(rest_position_);
 }
 
 std::span<const double> Body::velocity() const {
-    return mechanics_ ? mechanics_->velocity() : std::span<const double>(rest_velocity_);
+    return mechanics_ ? mechanics_->velocity()
+           : rigid_   ? rigid_->velocity()
+                      : std::span<const double>(rest_velocity_);
+}
+
+double Body::kinetic_energy() const {
+    return mechanics_ ? mechanics_->kinetic_energy() : rigid_ ? rigid_->kinetic_energy() : 0;
+}
+
+double Body::strain_energy() const {
+    return mechanics_ ? mechanics_->strain_energy() : rigid_ ? rigid_->spring_energy() : 0;
 }
 
 } // namespace duet::solid

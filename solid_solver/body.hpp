@@ -6,6 +6,7 @@
 #include "solid_solver/heat.hpp"
 #include "solid_solver/implicit.hpp"
 #include "solid_solver/mechanics.hpp"
+#include "solid_solver/rigid.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -67,6 +68,10 @@ class Body {
 
     const Heat& heat() const { return heat_; }
     Heat& heat() { return heat_; }
+    double kinetic_energy() const; ///< J/m
+    double strain_energy() const;  ///< J/m, of a rigid body that of its springs
+
+    const std::optional<Rigid>& rigid() const { return rigid_; }
     const std::optional<Implicit>& implicit() const { return implicit_; }
     const std::optional<Mechanics>& mechanics() const { return mechanics_; }
     std::optional<Mechanics>& mechanics() { return mechanics_; }
@@ -80,16 +85,15 @@ class Body {
         if (implicit_) {
             implicit_->visit_state(visit);
         }
+        if (rigid_) {
+            rigid_->visit_state(visit);
+        }
         visit(time_);
         visit(rest_position_);
         visit(rest_velocity_);
-        visit(work_);
         visit(choice_);
         visit(steps_since_update_);
     }
-
-    /// J/m that the interface forces have done on it since the start.
-    double interface_work() const { return mechanics_ ? mechanics_->interface_work() : work_; }
 
   private:
     void check_finite() const;
@@ -103,9 +107,8 @@ class Body {
     Heat heat_;
     std::optional<Mechanics> mechanics_;
     std::optional<Implicit> implicit_;
-    std::vector<double> rest_position_, rest_velocity_; ///< of a rigid body
-    std::vector<double> rest_force_;                    ///< N/m, of the interface on it
-    double work_ = 0;                                   ///< J/m, of the interface on it
+    std::optional<Rigid> rigid_;
+    std::vector<double> rest_position_, rest_velocity_; ///< of a fixed or prescribed body
     std::optional<Equilibrium> equilibrium_;
     double time_ = 0;   ///< s since the start
     double choice_ = 0; ///< of automatic stepping: 1 explicit, 2 implicit, 0 not made yet

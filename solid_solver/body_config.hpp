@@ -12,7 +12,7 @@
 
 namespace duet::solid {
 
-/// Isotropic and linear; SI units. Plane strain.
+/// Isotropic and linear; SI units.
 struct Material {
     double density = 1;           ///< kg/m3
     double heat_capacity = 1;     ///< J/(kg K)
@@ -57,7 +57,8 @@ struct BoundaryCondition {
 enum class Motion {
     fixed,      ///< rigid and at rest: heat alone
     prescribed, ///< rigid, moved as told: heat alone
-    deformable  ///< thermo-elastic, total Lagrangian
+    rigid,      ///< rigid, moved by the forces on it
+    deformable  ///< thermo-elastic
 };
 
 /// Place of a rigid body in time: turned by `angle` about `centre`, then shifted.
@@ -65,6 +66,14 @@ struct RigidMotion {
     Point centre = Point::Zero(); ///< m, reference place
     VectorField displacement;     ///< m, of `centre`
     Field angle;                  ///< rad, counter-clockwise
+};
+
+/// What holds a rigid body that moves by the forces on it. Springs are without force at the start.
+struct Support {
+    bool fixed_x = false, fixed_y = false, fixed_angle = false;
+    double spring_x = 0, spring_y = 0; ///< N/m2: per metre of depth
+    double spring_angle = 0;           ///< N: torque per angle and metre of depth
+    std::optional<Point> pivot;        ///< m, a point that keeps its place; none: all move
 };
 
 /// A force on the node nearest to a material point.
@@ -108,6 +117,7 @@ struct BodyConfig {
     Material material;
     std::vector<Material> part_material; ///< of each part of the mesh; empty: `material`
     RigidMotion rigid_motion;            ///< if the motion is prescribed
+    Support support;                     ///< if the motion is rigid
     Kinematics kinematics = Kinematics::total_lagrangian;
     Plane plane = Plane::strain;
     double reference_temperature = 0; ///< K, free of thermal stress; T0 of (31)

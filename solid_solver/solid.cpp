@@ -1,5 +1,7 @@
 #include "solid_solver/solid.hpp"
 
+#include <Eigen/Eigenvalues>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -132,14 +134,44 @@ double Solid::added_mass_limit(double fluid_density, double sound_speed) const {
     if (sound_speed <= 0) {
         return 0;
     }
-    return least_over_segments([&](const BodyConfig& body, double edge) {
+    const double impedance = fluid_density * sound_speed;
+    const double layers = least_over_segments([&](const BodyConfig& body, double edge) {
         const bool moves = body.motion == Motion::deformable;
         double lightest = std::numeric_limits<double>::infinity();
         for (const Material& material : body.materials()) {
             lightest = std::min(lightest, material.density);
         }
-        return moves ? lightest * edge / (fluid_density * sound_speed) : 0;
+        return moves ? lightest * edge / impedance : 0;
     });
+    const double rate = impedance * rigid_answer();
+    return rate > 0 ? std::min(1 / rate, layers > 0 ? layers : 1 / rate) : layers;
+}
+
+double Solid::rigid_answer() const {
+    std::vector<Eigen::Matrix3d> sum(bodies_.size(), Eigen::Matrix3d::Zero());
+    for (const Interface::Segment& segment : interface_.segment) {
+        const Interface::Node &a = interface_.node[segment.a], &b = interface_.node[segment.b];
+        const Body& body = bodies_[a.body];
+        if (!body.rigid()) {
+            continue;
+        }
+        const auto x = body.position();
+        const Point from(x[2 * a.node], x[2 * a.node + 1]), to(x[2 * b.node], x[2 * b.node + 1]);
+        const Point along = to - from, arm = 0.5 * (from + to) - body.rigid()->centre();
+        const Eigen::Vector3d mass = body.rigid()->inverse_mass();
+        const Eigen::Vector3d g = mass.cwiseSqrt().cwiseProduct(
+            Eigen::Vector3d(along.y(), -along.x(), -arm.dot(along))); // times the edge's length
+        sum[a.body] += g * g.transpose() / along.norm();
+    }
+    double largest = 0;
+    for (const Eigen::Matrix3d& one : sum) {
+        largest =
+            std::max(largest,
+                     Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(one, Eigen::EigenvaluesOnly)
+                         .eigenvalues()
+                         .z());
+    }
+    return largest;
 }
 
 } // namespace duet::solid

@@ -50,8 +50,9 @@ class Solid {
     double exchange_limit(double conductivity, double spacing) const;
 
     /// Longest window for which the reaction of the fluid, frozen in it, stays lighter than the
-    /// first layer of a deformable body (method, section 3): rho dx_s >= rho_f c window. 0: no
-    /// limit.
+    /// first layer of a deformable body (method, section 3): rho dx_s >= rho_f c window, or than a
+    /// rigid body as a whole: 1 >= window lambda_max of M^-1 Z, Z = rho_f c sum ds g g^T over its
+    /// wet edges, g = (n, r x n) with the normal n and the arm r. 0: no limit.
     double added_mass_limit(double fluid_density, double sound_speed) const;
 
     const InterfaceAccount& account() const { return account_; }
@@ -72,6 +73,9 @@ class Solid {
   private:
     template <class Limit>
     double least_over_segments(const Limit& limit) const;
+    /// The largest of lambda_max of sum ds M^-1 g g^T over the rigid bodies, m2/kg; see
+    /// added_mass_limit.
+    double rigid_answer() const;
     void set_loads(std::span<const double> force, std::span<const double> heat_flow);
     void book(double length, std::span<const double> force, std::span<const double> heat_flow);
 

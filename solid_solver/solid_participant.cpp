@@ -138,10 +138,8 @@ void Participant::fill(v1::Ledger& ledger) const {
         walls += account.walls;
         sources += account.sources + account.thermoelastic;
         thermoelastic += account.thermoelastic;
-        if (body.mechanics()) {
-            kinetic += body.mechanics()->kinetic_energy();
-            strain += body.mechanics()->strain_energy();
-        }
+        kinetic += body.kinetic_energy();
+        strain += body.strain_energy();
     }
     const InterfaceAccount& passed = solid_->account();
     ledger.set_mass(mass);
@@ -192,7 +190,8 @@ void Participant::describe(v1::Ready& ready) const {
              << (body.deformable() ? deformable_model(body)
                  : body.config().motion == Motion::prescribed
                      ? "rigid, moved as prescribed, heat alone"
-                     : "fixed, heat alone")
+                 : body.rigid() ? "rigid, moved by the forces on it"
+                                : "fixed, heat alone")
              << ", " << body.nodes() << " nodes, " << body.config().mesh.triangle.size()
              << " triangles, " << body.domains().size() << " smoothing domains, stable step "
              << body.stable_step() << " s" << steps_model(body, scene_.time().window());

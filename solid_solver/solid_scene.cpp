@@ -58,6 +58,20 @@ BoundaryCondition condition_from_scene(const v1::Boundary& boundary) {
     return condition;
 }
 
+Support support_from_scene(const v1::Support& given) {
+    Support support;
+    support.fixed_x = given.fixed_x();
+    support.fixed_y = given.fixed_y();
+    support.fixed_angle = given.fixed_angle();
+    support.spring_x = given.spring_x();
+    support.spring_y = given.spring_y();
+    support.spring_angle = given.spring_angle();
+    if (given.has_pivot()) {
+        support.pivot = to_point(given.pivot());
+    }
+    return support;
+}
+
 Mesh mesh_from_scene(const v1::Body& body, const std::filesystem::path& folder) {
     if (!body.mesh().empty()) {
         return read_mesh_file(
@@ -128,9 +142,13 @@ config_from_scene(const v1::Body& body, unsigned threads, const std::filesystem:
     config.mesh = mesh_from_scene(body, folder);
     config.motion = body.motion() == v1::Body::DEFORMABLE   ? Motion::deformable
                     : body.motion() == v1::Body::PRESCRIBED ? Motion::prescribed
+                    : body.motion() == v1::Body::RIGID      ? Motion::rigid
                                                             : Motion::fixed;
     config.rigid_motion = {
         to_point(body.centre()), to_field(body.displacement()), to_field(body.angle())};
+    if (body.has_support()) {
+        config.support = support_from_scene(body.support());
+    }
     put_material(body, config.material);
     config.part_material = part_materials(body, config);
     config.initial_temperature = to_field(body.initial_temperature());

@@ -107,6 +107,17 @@ TEST(SceneCheck, Bodies) {
     expect_fault("solid.body[0].element_size=1.5", "larger than the body's shorter side");
     expect_fault("solid.body[0].motion=\"deformable\"", "lacks the key 'youngs_modulus'");
     expect_fault("solid.body[0].initial_velocity=[1, 0]", "has an initial velocity");
+    expect_fault("solid.body[0].support={ fixed_x = true }", "has a support");
+    EXPECT_EQ(problems(good,
+                       {"solid.body[0].motion=\"rigid\"",
+                        "solid.body[0].support={ spring_angle = 2, pivot = [1, 0] }",
+                        "solid.body[0].initial_velocity=[1, 0]",
+                        "solid.body[0].boundary[0].pressure=3"}),
+              "");
+    EXPECT_NE(
+        problems(good, {"solid.body[0].motion=\"rigid\"", "solid.body[0].boundary[0].fixed_x=true"})
+            .find("its 'support' says"),
+        std::string::npos);
     expect_fault("solid.body[0].boundary[0].along=[[1, 0.5], [3, 0.5]]",
                  "no side of the body lies between");
     EXPECT_NE(problems(good,

@@ -160,6 +160,29 @@ TEST_F(SolidParticipant, ADeformableBodyMovesItsInterface) {
     EXPECT_GT(report.ledger().strain_energy(), 0);
 }
 
+TEST_F(SolidParticipant, ARigidBodyIsMovedByTheLoadsOfItsInterface) {
+    v1::Body& body = *configure_.mutable_scene()->mutable_solid()->mutable_body(0);
+    body.set_motion(v1::Body::RIGID);
+    body.mutable_support()->set_fixed_y(true);
+    body.mutable_support()->set_spring_x(7);
+    add_probe("turn", "angle");
+    configure();
+    const v1::Report report = advance(0.25, -3, 0.01);
+    // M x'' = F - k x: M = 2, F = 0.4.
+    const double frequency = std::sqrt(3.5), phase = 0.25 * frequency;
+    const double way = 0.4 / 7 * (1 - std::cos(phase));
+    EXPECT_NEAR(motion_.position[0], 0.5 + way, 1e-4 * way); // the step's (w dt)^2/24
+    EXPECT_NEAR(motion_.velocity[0], 0.4 / 7 * frequency * std::sin(phase), 1e-5);
+    EXPECT_EQ(motion_.velocity[1], 0);
+    EXPECT_NEAR(report.ledger().work(), 0.4 * way, 1e-4 * way);
+    EXPECT_NEAR(report.ledger().strain_energy(), 0.5 * 7 * way * way, 1e-3 * way * way);
+    EXPECT_NEAR(report.ledger().kinetic_energy() + report.ledger().strain_energy(),
+                report.ledger().work(),
+                1e-3 * report.ledger().work());
+    EXPECT_NEAR(report.ledger().heat(), -3 * 40 * 0.25, 1e-10); // and it takes the heat
+    EXPECT_NEAR(value(report.sample(), "turn"), 0, 1e-14);
+}
+
 TEST_F(SolidParticipant, AProbeTakesTheDifferenceAlongALine) {
     v1::Boundary& hot =
         *configure_.mutable_scene()->mutable_solid()->mutable_body(0)->add_boundary();
