@@ -325,7 +325,11 @@ void Checker::check_body(const v1::Body& body, const std::string& path) {
     if (!loaded && body.point_load_size() > 0)
         problem(path + ".point_load",
                 "only a body with motion = \"deformable\" or \"rigid\" takes point loads");
-    if (body.has_support() && body.motion() != v1::Body::RIGID)
+    const v1::Support& support = body.support();
+    const bool supported = support.fixed_x() || support.fixed_y() || support.fixed_angle()
+                           || support.spring_x() > 0 || support.spring_y() > 0
+                           || support.spring_angle() > 0 || support.has_pivot();
+    if (supported && body.motion() != v1::Body::RIGID)
         problem(path + ".support",
                 "only a body with motion = \"rigid\" has a support; hold a deformable one by its "
                 "boundaries");
