@@ -293,6 +293,15 @@ void describe_coupling(const v1::Scene& scene, const Estimate& e, std::string& o
                    + (longest < 1.7 * e.window ? ": TOO CLOSE, shorten time.window" : "") + "\n";
         }
         if (body.motion() == v1::Body::DEFORMABLE) {
+            if (const double viscosity = fluid.density() * fluid.kinematic_viscosity();
+                viscosity > 0) {
+                // rho_s dx_s / 2 > 2 window mu / (0.5 dx)
+                const double longest =
+                    0.25 * body.density() * body.element_size() * 0.5 * fluid.spacing() / viscosity;
+                out += "        '" + body.name() + "', drag: windows up to " + number(longest)
+                       + " s are stable" + (longest < e.window ? ", the run takes those" : "")
+                       + "\n";
+            }
             // In a window the fluid reacts with the mass rho_f c window on each area:
             // rho_s dx_s must exceed it.
             const double sound = fluid.sound_speed() > 0 ? fluid.sound_speed() : 10 * e.speed;

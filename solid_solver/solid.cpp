@@ -113,6 +113,15 @@ double Solid::least_over_segments(const Limit& limit) const {
     return least;
 }
 
+/// The smallest density of a body's materials, kg/m3.
+static double lightest(const BodyConfig& body) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Material& material : body.materials()) {
+        least = std::min(least, material.density);
+    }
+    return least;
+}
+
 double Solid::exchange_limit(double conductivity, double spacing) const {
     if (conductivity <= 0) {
         return 0;
@@ -137,11 +146,7 @@ double Solid::added_mass_limit(double fluid_density, double sound_speed) const {
     const double impedance = fluid_density * sound_speed;
     const double layers = least_over_segments([&](const BodyConfig& body, double edge) {
         const bool moves = body.motion == Motion::deformable;
-        double lightest = std::numeric_limits<double>::infinity();
-        for (const Material& material : body.materials()) {
-            lightest = std::min(lightest, material.density);
-        }
-        return moves ? lightest * edge / impedance : 0;
+        return moves ? lightest(body) * edge / impedance : 0;
     });
     const double rate = impedance * rigid_answer();
     return rate > 0 ? std::min(1 / rate, layers > 0 ? layers : 1 / rate) : layers;
@@ -172,6 +177,16 @@ double Solid::rigid_answer() const {
                          .z());
     }
     return largest;
+}
+
+double Solid::drag_limit(double viscosity, double spacing) const {
+    if (viscosity <= 0) {
+        return 0;
+    }
+    return least_over_segments([&](const BodyConfig& body, double edge) {
+        const double layer = lightest(body) * edge / 2;
+        return body.motion == Motion::deformable ? 0.5 * layer * (spacing / 2) / viscosity : 0;
+    });
 }
 
 } // namespace duet::solid

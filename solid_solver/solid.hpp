@@ -55,6 +55,12 @@ class Solid {
     /// wet edges, g = (n, r x n) with the normal n and the arm r. 0: no limit.
     double added_mass_limit(double fluid_density, double sound_speed) const;
 
+    /// Longest window for which the drag of a fluid of dynamic viscosity `viscosity` and particle
+    /// spacing `spacing`, frozen in it, cannot turn the first layer of a deformable body back:
+    /// rho dx_s/2 >= 2 window mu / (dx/2), twice what is stable at all where the fluid goes ahead
+    /// in a motion with the acceleration of the window before. 0: no limit.
+    double drag_limit(double viscosity, double spacing) const;
+
     const InterfaceAccount& account() const { return account_; }
 
     template <class Visit>

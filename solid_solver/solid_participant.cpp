@@ -120,7 +120,13 @@ double Participant::longest_window() const {
     const v1::Fluid& fluid = scene_.fluid();
     const double heat = solid_->exchange_limit(fluid.conductivity(), fluid.spacing());
     const double mass = solid_->added_mass_limit(fluid.density(), fluid.sound_speed());
-    return heat > 0 && mass > 0 ? std::min(heat, mass) : std::max(heat, mass);
+    const double drag =
+        solid_->drag_limit(fluid.density() * fluid.kinematic_viscosity(), fluid.spacing());
+    double longest = 0;
+    for (const double limit : {heat, mass, drag}) {
+        longest = longest > 0 && limit > 0 ? std::min(longest, limit) : std::max(longest, limit);
+    }
+    return longest;
 }
 
 void Participant::fill(protocol::InterfaceMotion& motion) const {

@@ -121,6 +121,7 @@ TEST(SolidExchange, LimitsOfTheWindow) {
     // rho c dx_s/2 (dx/2) / k_f and rho_s dx_s / (rho_f c)
     EXPECT_NEAR(solid.exchange_limit(0.6, 0.2), 2 * 3 * 0.05 * 0.1 / 0.6, 1e-15);
     EXPECT_NEAR(solid.added_mass_limit(1.5, 20), 2 * 0.1 / (1.5 * 20), 1e-15);
+    EXPECT_NEAR(solid.drag_limit(0.6, 0.2), 2 * 0.05 * 0.1 / 0.6 / 2, 1e-15);
     EXPECT_EQ(solid.exchange_limit(0, 0.2), 0);
     bodies[0].insulated = true;
     EXPECT_EQ(Solid(bodies, cavity).exchange_limit(0.6, 0.2), 0);
