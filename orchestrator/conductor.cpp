@@ -359,7 +359,7 @@ void Conductor::check_silence() {
 Failure Conductor::root_cause(const Failure& first) {
     if (first.direct())
         return first;
-    const Clock::time_point deadline = Clock::now() + milliseconds(300);
+    const Clock::time_point deadline = Clock::now() + std::chrono::seconds(1);
     while (auto event = session_.next(deadline)) {
         try {
             attend(std::move(*event));
