@@ -94,7 +94,7 @@ void Boundary::add_chain(const Chain& chain) {
     for (std::uint32_t j = 1; j <= count; ++j) {
         if (j == count || std::abs(cross(direction(start), direction(j))) > 1e-9
             || dot(direction(start), direction(j)) < 0) {
-            add_face(first + start, j - start, !chain.insulated);
+            add_face(first + start, j - start, !chain.insulated, false);
             start = j;
         }
     }
@@ -138,7 +138,7 @@ void Boundary::find_runs(std::uint32_t first) {
     }
 }
 
-void Boundary::add_face(std::uint32_t first, std::uint32_t segments, bool heated) {
+void Boundary::add_face(std::uint32_t first, std::uint32_t segments, bool heated, bool slip) {
     Face face;
     face.a = segments_[first].a;
     face.b = segments_[first + segments - 1].b;
@@ -148,6 +148,7 @@ void Boundary::add_face(std::uint32_t first, std::uint32_t segments, bool heated
     face.first = first;
     face.segments = segments;
     face.heated = heated;
+    face.slip = slip;
     face.run = static_cast<std::uint32_t>(faces_.size());
     for (std::uint32_t j = first; j < first + segments; ++j) {
         segments_[j].face_start = dot(segments_[j].a - face.a, face.tangent);
@@ -172,6 +173,7 @@ void Boundary::add_cells(std::uint32_t segment, const Face& face) {
                           s.length / s.cells,
                           face.normal,
                           face.heated,
+                          face.slip,
                           starts_face ? none : index - 1,
                           none,
                           0});

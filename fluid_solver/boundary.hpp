@@ -8,6 +8,7 @@
 #include "fluid_solver/scene.hpp"
 #include "fluid_solver/vector.hpp"
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -37,8 +38,13 @@ struct Face {
     double length = 0;
     std::uint32_t first = 0, segments = 0;
     bool heated = false;   ///< its temperature is known (a wall's or the solid's); adiabatic if not
+    bool slip = false;     ///< the velocity is known across it alone
     std::uint32_t run = 0; ///< the first face of its run
     double run_before = 0, run_after = 0; ///< arc length of the run before and after this face
+
+    /// Whether a component of the velocity is known at the face; else its slope along n is zero.
+    bool knows_u() const { return !slip || std::abs(normal.x) > 0.5; }
+    bool knows_v() const { return !slip || std::abs(normal.y) > 0.5; }
 };
 
 /// A piece of a segment, about half a spacing long, on which flux and traction are taken.
@@ -47,7 +53,7 @@ struct WallCell {
     double centre = 0; ///< along the segment, 0..1
     double length = 0;
     Vec2 normal; ///< from the fluid into the wall
-    bool heated = false;
+    bool heated = false, slip = false;
     std::uint32_t before = none, after = none; ///< neighbours, unless a corner lies between
     double curvature = 0; ///< div n, 1/m: positive where the fluid lies inside the bend
 };
@@ -153,6 +159,7 @@ class Boundary {
     // walls.cpp
     void add_loop(std::vector<Vec2> corners, bool hole);
     void check_turning(const Wall& wall, const Side& side) const;
+    void check_slip(const Wall& wall, const Side& side) const;
     void assign_walls();
     void add_walls();
     void keep(const std::vector<Side>& loop, double from, double to);
@@ -162,7 +169,7 @@ class Boundary {
 
     void build();
     void add_chain(const Chain& chain);
-    void add_face(std::uint32_t first, std::uint32_t segments, bool heated);
+    void add_face(std::uint32_t first, std::uint32_t segments, bool heated, bool slip);
     void find_runs(std::uint32_t first);
     void add_cells(std::uint32_t segment, const Face& face);
     void link_cells(const Chain& chain, std::uint32_t first);

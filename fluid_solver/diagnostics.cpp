@@ -135,8 +135,12 @@ Values Fluid::Implementation::at(Vec2 point) const {
             }
             const double w = kernel.value(norm(r));
             const Lanes wall = boundary_.at(*contact.face, contact.foot + ahead).value;
-            u.add(r, w, wall[0]);
-            v.add(r, w, wall[1]);
+            if (contact.face->knows_u()) {
+                u.add(r, w, wall[0]);
+            }
+            if (contact.face->knows_v()) {
+                v.add(r, w, wall[1]);
+            }
             if (contact.face->heated && heat_) {
                 T.add(r, w, wall[3]);
             }

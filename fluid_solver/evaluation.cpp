@@ -64,13 +64,11 @@ struct LaplacianWeights {
     float operator()(std::size_t k) const { return values[k]; }
 };
 
-/// The same where the temperature has a tensor of its own.
-struct TwoLaplacianWeights {
-    LaplacianWeights velocity, temperature;
+/// The same where the fields have tensors of their own.
+struct SeparateLaplacianWeights {
+    LaplacianWeights u, v, T;
 
-    Four operator()(std::size_t k) const {
-        return Four{velocity(k), velocity(k), 0, temperature(k)};
-    }
+    Four operator()(std::size_t k) const { return Four{u(k), v(k), 0, T(k)}; }
 };
 
 /// Drops the neighbours that walls hide.
@@ -109,7 +107,8 @@ Vec2 push_off(const std::vector<Contact>& contacts, double spacing) {
 /// The share of c^2 with which a particle's pressure may answer to its divergence. One inner step
 /// changes the pressure of a particle by -dt^2 c^2 lambda/dx^2 times itself by way of its own and
 /// its neighbours' velocities:
-///     lambda/dx^2 = sum_b L w.L w - L_v (sum_b w + S).L sum_b w,
+///     lambda/dx^2 = sum_b L w.L w - own.L sum_b w,   own = L_v (sum_b w + S): div v = ... -
+///     v_a.own,
 /// and 4 - 2 delta h c dt sum_b 2 V F is the limit of stability. Inside the fluid lambda is 0.3 to
 /// 0.65; beside a wall S grows as d1 falls, and lambda reaches 1.6 at d1 = dx/10. Since the
 /// particle is alone with this it is made softer alone: c is free, and a steady state does not
@@ -118,7 +117,7 @@ float softness(const std::span<const PairBlock> pairs,
                const Mat2& L,
                const Mat2& L_velocity,
                Vec2 weight_sum,
-               Vec2 S,
+               Vec2 own,
                double spacing) {
     constexpr double largest = 0.75; // stable to inner steps of 2 dx/c
     Eight xx{}, xy{}, yy{};
@@ -131,8 +130,9 @@ float softness(const std::span<const PairBlock> pairs,
     const Four ww = lane_sums(xx, xy, yy);
     const Mat2 squares{ww[0], ww[1], ww[1], ww[2]};
     const Mat2 through_neighbours = L_velocity * squares;
-    const double own = dot(L_velocity * (weight_sum + S), L * weight_sum);
-    const double lambda = spacing * spacing * (through_neighbours.xx + through_neighbours.yy - own);
+    const double through_itself = dot(own, L * weight_sum);
+    const double lambda =
+        spacing * spacing * (through_neighbours.xx + through_neighbours.yy - through_itself);
     return lambda > largest ? static_cast<float>(largest / lambda) : 1;
 }
 
@@ -151,7 +151,7 @@ struct Evaluation::Work {
     std::vector<Contact> contacts;
     WallSums walls;
     Mat2 pressure;                             ///< near walls: L of the pressure
-    std::size_t velocity = 0, temperature = 0; ///< places in the batch of operators
+    std::size_t u = 0, v = 0, temperature = 0; ///< places in the batch of operators
 };
 
 /// What one thread needs for a batch of particles: first the moments of each, then all operators,
@@ -161,7 +161,7 @@ struct Evaluation::Scratch {
     bool beside_walls = false; ///< walls may be in reach from this cell
     Surroundings surroundings;
     Neighbours near;
-    std::array<Work, OperatorBatch::room / 2> work;
+    std::array<Work, OperatorBatch::room / 3> work;
     OperatorBatch operators;
     std::size_t blocks = 0; ///< used of the chunk's
 };
@@ -224,17 +224,21 @@ bool Evaluation::gather(
                             &pairs_[a / chunk_size * chunk_blocks_ + first_block_[a]],
                             work.directions);
     weight_sum[a] = {m.wx, m.wy};
-    work.velocity = work.temperature = s.operators.size();
+    work.u = work.v = work.temperature = s.operators.size();
     if (work.contacts.empty()) {
         s.operators.add(m);
         return true;
     }
-    // Velocity and temperature have tensors of their own: not every wall is heated, and beside two
-    // faces their sums differ from the pressure's.
+    // Velocity and temperature have tensors of their own: not every wall is heated, some slip, and
+    // beside two faces their sums differ from the pressure's.
     const WallSums& w = work.walls;
     ghosts_.sums(scene.boundary, work.contacts, work.walls);
     work.pressure = correction(m, w.N_n);
-    s.operators.add(m, w.velocity.S_xi, w.velocity.S_xi_xi, w.velocity);
+    s.operators.add(m, w.u.S_xi + w.u_slips.N_n, w.u.S_xi_xi + w.u_slips.N_d_n_n, w.u);
+    if (w.slips) {
+        work.v = s.operators.size();
+        s.operators.add(m, w.v.S_xi + w.v_slips.N_n, w.v.S_xi_xi + w.v_slips.N_d_n_n, w.v);
+    }
     if constexpr (Heat) {
         work.temperature = s.operators.size();
         s.operators.add(m,
@@ -258,12 +262,12 @@ void Evaluation::interior(std::size_t a,
                           const Work& work) {
     near_heated[a] = 0;
     wall_slot_[a] = no_wall;
-    const auto B = s.operators.B(work.velocity);
-    const auto E = s.operators.E(work.velocity);
+    const auto B = s.operators.B(work.u);
+    const auto E = s.operators.E(work.u);
     const PairSums sums = pair_sums(particles, a, pairs(a), [&](std::size_t block) {
         return LaplacianWeights(B, work.directions, block);
     });
-    L[a] = narrow(s.operators.L(work.velocity));
+    L[a] = narrow(s.operators.L(work.u));
     const Four gx = L[a].xx * sums.gradient_x + L[a].xy * sums.gradient_y;
     const Four gy = L[a].yx * sums.gradient_x + L[a].yy * sums.gradient_y;
     store(slope_x[a], gx);
@@ -280,41 +284,53 @@ void Evaluation::beside_walls(std::size_t a,
                               const Work& work) {
     const WallSums& w = work.walls;
     near_heated[a] = w.temperature.K != 0;
-    const Mat2 Lv = s.operators.L(work.velocity), LT = s.operators.L(work.temperature);
-    const auto Bv = s.operators.B(work.velocity), BT = s.operators.B(work.temperature);
-    const auto Ev = s.operators.E(work.velocity), ET = s.operators.E(work.temperature);
+    const DirichletSums& v_known = w.slips ? w.v : w.u;
+    const Mat2 Lu = s.operators.L(work.u), Lv = s.operators.L(work.v),
+               LT = s.operators.L(work.temperature);
+    const auto Bu = s.operators.B(work.u), Bv = s.operators.B(work.v),
+               BT = s.operators.B(work.temperature);
+    const auto Eu = s.operators.E(work.u), Ev = s.operators.E(work.v),
+               ET = s.operators.E(work.temperature);
     const PairSums sums = pair_sums(particles, a, pairs(a), [&](std::size_t block) {
-        return TwoLaplacianWeights{LaplacianWeights(Bv, work.directions, block),
-                                   LaplacianWeights(BT, work.directions, block)};
+        const LaplacianWeights u(Bu, work.directions, block);
+        return SeparateLaplacianWeights{u,
+                                        w.slips ? LaplacianWeights(Bv, work.directions, block) : u,
+                                        LaplacianWeights(BT, work.directions, block)};
     });
     const auto wide = [](const Four& f) { return __builtin_convertvector(f, Lanes); };
     const Lanes fa = load(particles.fields[a]);
-    const Lanes Sx{w.velocity.S.x, w.velocity.S.x, 0, w.temperature.S.x};
-    const Lanes Sy{w.velocity.S.y, w.velocity.S.y, 0, w.temperature.S.y};
-    const Lanes K{w.velocity.K, w.velocity.K, 0, w.temperature.K};
+    const Lanes Sx{w.u.S.x, v_known.S.x, 0, w.temperature.S.x};
+    const Lanes Sy{w.u.S.y, v_known.S.y, 0, w.temperature.S.y};
+    const Lanes K{w.u.K, v_known.K, 0, w.temperature.K};
     const Lanes rx = wide(sums.gradient_x) + w.Sx_value - Sx * fa;
     const Lanes ry = wide(sums.gradient_y) + w.Sy_value - Sy * fa;
     // (The pressure's slope is made by the inner steps, with the body force of the moment.)
-    const Lanes gx = Lanes{Lv.xx, Lv.xx, 0, LT.xx} * rx + Lanes{Lv.xy, Lv.xy, 0, LT.xy} * ry;
-    const Lanes gy = Lanes{Lv.yx, Lv.yx, 0, LT.yx} * rx + Lanes{Lv.yy, Lv.yy, 0, LT.yy} * ry;
+    const Lanes gx = Lanes{Lu.xx, Lv.xx, 0, LT.xx} * rx + Lanes{Lu.xy, Lv.xy, 0, LT.xy} * ry;
+    const Lanes gy = Lanes{Lu.yx, Lv.yx, 0, LT.yx} * rx + Lanes{Lu.yy, Lv.yy, 0, LT.yy} * ry;
     store(slope_x[a], __builtin_convertvector(gx, Four));
     store(slope_y[a], __builtin_convertvector(gy, Four));
-    const Lanes Ex = wide(Four{Ev[0], Ev[0], 0, ET[0]});
-    const Lanes Ey = wide(Four{Ev[1], Ev[1], 0, ET[1]});
+    const Lanes Ex = wide(Four{Eu[0], Ev[0], 0, ET[0]});
+    const Lanes Ey = wide(Four{Eu[1], Ev[1], 0, ET[1]});
     const Lanes laplacian = wide(sums.laplacian) - (w.K_value - K * fa) - Ex * gx - Ey * gy;
     store_diffusion(a, scene.input, __builtin_convertvector(laplacian, Four));
     L[a] = narrow(work.pressure);
     const Vec2 sum_w{weight_sum[a].x, weight_sum[a].y};
+    const Mat2 L_velocity{Lu.xx, Lu.xy, Lv.yx, Lv.yy}; // what makes div v of both gradients
+    const Vec2 L_S{(Lu * w.u.S).x, (Lv * v_known.S).y};
     auto& terms = wall_[a / chunk_size];
     wall_slot_[a] = static_cast<std::uint8_t>(terms.size());
-    terms.push_back(
-        {narrow(Lv),
-         work.pressure * w.N_n,
-         work.pressure * w.N_acceleration,
-         Lv * w.velocity.S,
-         Lv.xx * w.Sx_value[0] + Lv.xy * w.Sy_value[0] + Lv.yx * w.Sx_value[1]
-             + Lv.yy * w.Sy_value[1],
-         softness(pairs(a), work.pressure, Lv, sum_w, w.velocity.S, scene.input.spacing)});
+    terms.push_back({narrow(L_velocity),
+                     work.pressure * w.N_n,
+                     work.pressure * w.N_acceleration,
+                     L_S,
+                     Lu.xx * w.Sx_value[0] + Lu.xy * w.Sy_value[0] + Lv.yx * w.Sx_value[1]
+                         + Lv.yy * w.Sy_value[1],
+                     softness(pairs(a),
+                              work.pressure,
+                              L_velocity,
+                              sum_w,
+                              L_velocity * sum_w + L_S,
+                              scene.input.spacing)});
     shift[a] = shift_vector(sum_w + w.C,
                             push_off(work.contacts, scene.input.spacing),
                             scene.input.shift_factor,

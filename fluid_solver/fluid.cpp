@@ -25,6 +25,11 @@ const Config& checked(const Config& c) {
     if (c.region.size() < 3) {
         throw SceneError("the fluid's region needs at least three corners");
     }
+    if (c.formulation == Formulation::paper
+        && std::any_of(c.walls.begin(), c.walls.end(), [](const Wall& w) { return w.slip; })) {
+        throw SceneError("the paper's formulation knows no walls that slip; take the consistent "
+                         "one, or let no wall slip");
+    }
     const auto [left, right] = std::minmax_element(
         c.region.begin(), c.region.end(), [](Vec2 p, Vec2 q) { return p.x < q.x; });
     const auto [low, high] = std::minmax_element(

@@ -63,6 +63,7 @@ Wall wall_of(const v1::Wall& wall, const v1::Fluid& fluid) {
         w.rotation = {to_vector(wall.rotation().centre()), to_function(wall.rotation().rate())};
     }
     w.heat_flux = to_function(wall.heat_flux());
+    w.slip = wall.slip();
     return w;
 }
 

@@ -19,45 +19,69 @@ void add(Symmetric& to, double factor, const Symmetric& s) {
     }
 }
 
-/// One ghost, or all behind a straight wall: S and K with the same xi.
-void add(DirichletSums& sums, Vec2 S, double K, Vec2 xi) {
+DirichletSums& operator+=(DirichletSums& a, const DirichletSums& b) {
+    a.S += b.S;
+    a.K += b.K;
+    a.S_xi += b.S_xi;
+    a.S_xi_xi = a.S_xi_xi + b.S_xi_xi;
+    a.K_xi += b.K_xi;
+    add(a.K_xi_xi, 1, b.K_xi_xi);
+    return a;
+}
+
+/// All ghosts behind a straight wall: S and K with the same xi.
+DirichletSums with_xi(Vec2 S, double K, Vec2 xi) {
     const Symmetric xi_xi = square(xi);
-    sums.S += S;
-    sums.K += K;
-    sums.S_xi += outer(S, xi);
+    DirichletSums sums{S, K, outer(S, xi), {}, K * xi, {}};
     add(sums.S_xi_xi[0], S.x, xi_xi);
     add(sums.S_xi_xi[1], S.y, xi_xi);
-    sums.K_xi += K * xi;
     add(sums.K_xi_xi, K, xi_xi);
+    return sums;
 }
 
-/// Known wall values for velocity and, on heated faces, temperature.
-void add_values(
-    const Face& face, const WallPoint& wall, Vec2 S, double K, Vec2 xi, WallSums& sums) {
-    add(sums.velocity, S, K, xi);
-    Lanes value = wall.value;
-    if (face.heated) {
-        add(sums.temperature, S, K, xi);
-    } else {
-        value[3] = 0;
+/// What the walls of one face know: the sums of its known values, to whom they belong, and the
+/// values with what is not known left out.
+void add_values(const Face& face, const DirichletSums& known, WallSums& sums) {
+    if (face.knows_u()) {
+        sums.u += known;
     }
-    sums.Sx_value += S.x * value;
-    sums.Sy_value += S.y * value;
-    sums.K_value += K * value;
+    if (sums.slips && face.knows_v()) {
+        sums.v += known;
+    }
+    if (face.heated) {
+        sums.temperature += known;
+    }
+}
+Lanes known_part(const Face& face, Lanes value) {
+    value[0] = face.knows_u() ? value[0] : 0;
+    value[1] = face.knows_v() ? value[1] : 0;
+    value[3] = face.heated ? value[3] : 0;
+    return value;
 }
 
-/// Known normal slope for the pressure and, on faces of known heat flux, the temperature.
+/// Known normal slope for the pressure, on faces of known heat flux for the temperature, and along
+/// faces that slip for the velocity.
 void add_slopes(const Contact& contact, const WallPoint& foot, Vec2 N, WallSums& sums) {
     const Vec2 n = contact.normal;
+    const Face& face = *contact.face;
     sums.N_n += outer(N, n);
     sums.N_acceleration += dot(foot.acceleration, n) * N;
-    if (!contact.face->heated) {
+    const auto add_to = [&](NeumannSums& slopes) {
+        const Symmetric n_n = square(n);
+        slopes.N_n += outer(N, n);
+        add(slopes.N_d_n_n[0], 2 * contact.distance * N.x, n_n);
+        add(slopes.N_d_n_n[1], 2 * contact.distance * N.y, n_n);
+    };
+    if (!face.heated) {
         sums.Sx_value[3] += foot.value[3] * N.x;
         sums.Sy_value[3] += foot.value[3] * N.y;
-        const Symmetric n_n = square(n);
-        sums.adiabatic.N_n += outer(N, n);
-        add(sums.adiabatic.N_d_n_n[0], 2 * contact.distance * N.x, n_n);
-        add(sums.adiabatic.N_d_n_n[1], 2 * contact.distance * N.y, n_n);
+        add_to(sums.adiabatic);
+    }
+    if (!face.knows_u()) {
+        add_to(sums.u_slips);
+    }
+    if (!face.knows_v()) {
+        add_to(sums.v_slips);
     }
 }
 
@@ -133,7 +157,11 @@ void Ghosts::add_straight(const Boundary& boundary, const Contact& contact, Wall
     const double S = s.C + (s.N - s.C * d1) / least; // with q = 1 + d2/max(d1, 0.25 dx)
     const double K = 2 * (s.F0 + s.F1 / least);
     const WallPoint wall = boundary.at(*contact.face, contact.foot);
-    add_values(*contact.face, wall, S * n, K, d1 * n, sums);
+    const Lanes value = known_part(*contact.face, wall.value);
+    add_values(*contact.face, with_xi(S * n, K, d1 * n), sums);
+    sums.Sx_value += (S * n.x) * value;
+    sums.Sy_value += (S * n.y) * value;
+    sums.K_value += K * value;
     add_slopes(contact, wall, s.N * n, sums);
     sums.C += s.C * n;
 }
@@ -185,7 +213,8 @@ Symmetric turned(const Symmetric& a, const Contact& contact) {
             a[0] * n.y * n.y + 2 * a[1] * n.y * t.y + a[2] * t.y * t.y};
 }
 
-void add(DirichletSums& sums, const FrameSums& in_frame, const Contact& contact) {
+DirichletSums turned(const FrameSums& in_frame, const Contact& contact) {
+    DirichletSums sums{};
     const Vec2 n = contact.normal, t = contact.tangent;
     sums.S += turned(in_frame.S, contact);
     sums.K += in_frame.K;
@@ -199,6 +228,7 @@ void add(DirichletSums& sums, const FrameSums& in_frame, const Contact& contact)
     add(sums.S_xi_xi[1], t.y, along_t);
     sums.K_xi += turned(in_frame.K_xi, contact);
     add(sums.K_xi_xi, 1, turned(in_frame.K_xi_xi, contact));
+    return sums;
 }
 
 /// Most ghosts of a row: 2 (R / (dx/3) + 1).
@@ -290,15 +320,10 @@ void Ghosts::add_direct(const Boundary& boundary,
         N += y * gradW;
         sums.C += turned(gradW, contact);
     }
-    add(sums.velocity, in_frame, contact);
-    if (face.heated) {
-        add(sums.temperature, in_frame, contact);
-    } else {
-        value_n[3] = value_t[3] = K_value[3] = 0;
-    }
-    sums.Sx_value += contact.normal.x * value_n + contact.tangent.x * value_t;
-    sums.Sy_value += contact.normal.y * value_n + contact.tangent.y * value_t;
-    sums.K_value += K_value;
+    add_values(face, turned(in_frame, contact), sums);
+    sums.Sx_value += known_part(face, contact.normal.x * value_n + contact.tangent.x * value_t);
+    sums.Sy_value += known_part(face, contact.normal.y * value_n + contact.tangent.y * value_t);
+    sums.K_value += known_part(face, K_value);
     add_slopes(contact, boundary.at(face, contact.foot), turned(N, contact), sums);
 }
 
@@ -306,6 +331,9 @@ void Ghosts::sums(const Boundary& boundary,
                   const std::vector<Contact>& contacts,
                   WallSums& sums) const {
     sums = WallSums{};
+    sums.slips = std::any_of(contacts.begin(), contacts.end(), [](const Contact& contact) {
+        return contact.face->slip;
+    });
     for (const Contact& contact : contacts) {
         if (spans(contact, contacts)) {
             add_straight(boundary, contact, sums);

@@ -47,14 +47,16 @@ struct NeumannSums {
 
 /// All that the walls add to one particle.
 struct WallSums {
-    DirichletSums velocity;    ///< every wall is no-slip
-    DirichletSums temperature; ///< heated walls only
-    NeumannSums adiabatic;     ///< the others
-    Mat2 N_n;                  ///< sum N n^T over all walls, for the pressure
-    Vec2 N_acceleration;       ///< sum N (a_wall . n)
-    Vec2 C;                    ///< sum V gradW, for the shift
-    Lanes Sx_value, Sy_value;  ///< sum S f_wall, lanes u, v, 0, T; of known slopes sum N slope
-    Lanes K_value;             ///< sum K f_wall
+    bool slips = false;           ///< a wall that slips is in sight; else v has the sums of u
+    DirichletSums u, v;           ///< walls where this component of the velocity is known
+    NeumannSums u_slips, v_slips; ///< the others
+    DirichletSums temperature;    ///< heated walls only
+    NeumannSums adiabatic;        ///< the others
+    Mat2 N_n;                     ///< sum N n^T over all walls, for the pressure
+    Vec2 N_acceleration;          ///< sum N (a_wall . n)
+    Vec2 C;                       ///< sum V gradW, for the shift
+    Lanes Sx_value, Sy_value;     ///< sum S f_wall, lanes u, v, 0, T; of known slopes sum N slope
+    Lanes K_value;                ///< sum K f_wall
 };
 
 class Ghosts {

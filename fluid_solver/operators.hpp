@@ -51,7 +51,7 @@ Mat2 correction(const Moments& moments, const Mat2& walls);
 /// of many particles, or many times over for one that has different walls for different fields.
 class OperatorBatch {
   public:
-    static constexpr std::size_t room = 32;
+    static constexpr std::size_t room = 48;
 
     void clear() { size_ = 0; }
     std::size_t size() const { return size_; }

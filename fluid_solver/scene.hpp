@@ -49,7 +49,9 @@ struct Rotation {
     Function rate; ///< rad/s, counter-clockwise
 };
 
-/// What differs on a part of the cavity's boundary; all else is fixed, no-slip and adiabatic.
+/// What differs on a part of the cavity's boundary; all else is fixed, no-slip and adiabatic. A
+/// wall that slips lies along an axis, so that each component of the velocity has one condition
+/// there.
 struct Wall {
     std::string name;
     Vec2 from = {}, to = {}; ///< every side on the line between them belongs to this wall
@@ -58,7 +60,8 @@ struct Wall {
     std::optional<Rotation> rotation = {};    ///< added to the velocity
     Function heat_flux = {};                  ///< W/m2, into the fluid
     std::optional<std::size_t> around =
-        {}; ///< instead of from and to: 0 the region, k the k-th hole
+        {};            ///< instead of from and to: 0 the region, k the k-th hole
+    bool slip = false; ///< no shear: only across the wall is the velocity known
 };
 
 enum class PressureLevel {

@@ -136,7 +136,8 @@ void WallEstimate::run(const Boundary& boundary,
         const Vec2 tangent{cell.normal.y, -cell.normal.x}; // in the direction of travel
         // What turns with the wall is not sheared: the bend is that of the rest.
         const double turning = s.wdd * turn_of_wall(boundary, c);
-        const double shear = (dot({s.rise[0], s.rise[1]}, tangent) + turning) / bent;
+        const double shear =
+            cell.slip ? 0 : (dot({s.rise[0], s.rise[1]}, tangent) + turning) / bent;
         loads_[c].compartment = s.compartment;
         const double slope_T = cell.heated ? s.rise[3] / bent : known_slope(boundary, cell);
         loads_[c].heat_flux = material.conductivity * slope_T;

@@ -79,6 +79,16 @@ void Boundary::check_turning(const Wall& wall, const Side& side) const {
     }
 }
 
+/// Where a wall slips, one component of the velocity is known and the other one's slope.
+void Boundary::check_slip(const Wall& wall, const Side& side) const {
+    const Vec2 t = side.b - side.a;
+    if (wall.slip && std::min(std::abs(t.x), std::abs(t.y)) > 1e-9 * norm(t)) {
+        throw SceneError("wall '" + wall.name + "' slips from " + print(side.a) + " to "
+                         + print(side.b)
+                         + ", which is not along an axis; turn the scene, or let it not slip");
+    }
+}
+
 void Boundary::assign_walls() {
     const double tolerance = 1e-6 * spacing_;
     for (std::size_t w = 0; w < walls_.size(); ++w) {
@@ -87,11 +97,12 @@ void Boundary::assign_walls() {
         const auto take = [&](Side& side) {
             side.wall = static_cast<std::uint32_t>(w);
             found = true;
+            check_turning(wall, side);
+            check_slip(wall, side);
         };
         if (wall.around) {
             for (Side& side : loops_.at(*wall.around)) {
                 take(side);
-                check_turning(wall, side);
             }
         } else {
             for (std::vector<Side>& loop : loops_) {
@@ -99,7 +110,6 @@ void Boundary::assign_walls() {
                     if (distance_to_segment(side.a, wall.from, wall.to) < tolerance
                         && distance_to_segment(side.b, wall.from, wall.to) < tolerance) {
                         take(side);
-                        check_turning(wall, side);
                     }
                 }
             }
@@ -203,11 +213,12 @@ void Boundary::keep(const std::vector<Side>& loop, double from, double to) {
 void Boundary::add_side(const Side& side) {
     const Vec2 whole = side.b - side.a;
     const double length = norm(whole);
-    bool known_temperature = false;
+    bool known_temperature = false, slip = false;
     std::uint32_t pieces = 1;
     if (side.wall != none) {
         const Wall& wall = walls_[side.wall];
         known_temperature = wall.temperature.has_value();
+        slip = wall.slip;
         wall_length_[side.wall] += length;
         if (!wall.velocity.is_number() || wall.rotation || !wall.heat_flux.is_number()
             || (known_temperature && !wall.temperature->is_number())) {
@@ -236,7 +247,7 @@ void Boundary::add_side(const Side& side) {
             temperature_.push_back(0);
         }
     }
-    add_face(first, pieces, known_temperature);
+    add_face(first, pieces, known_temperature, slip);
 }
 
 /// The polygon of an arc is smooth.

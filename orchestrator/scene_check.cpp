@@ -72,6 +72,8 @@ class Checker {
     void check_fluid();
     void check_hole(const v1::Hole& hole, const std::string& path);
     void check_wall(const v1::Wall& wall, const std::string& path);
+    Polygon outline_of(const std::string& around) const;
+    void check_slip(const v1::Wall& wall, const std::string& path);
     void check_sharing(const v1::Wall& wall, const std::string& path);
     void check_motion(const v1::Body& body, const std::string& path);
     void check_point_loads(const v1::Body& body, const std::string& path);
@@ -227,6 +229,7 @@ void Checker::check_wall(const v1::Wall& wall, const std::string& path) {
     if (wall.has_rotation())
         steady_in_place(wall.rotation().rate(), path + ".rotation.rate");
     check_sharing(wall, path);
+    check_slip(wall, path);
     if (wall.around().empty() == (wall.along_size() == 0))
         return problem(path, path + " needs either 'along', two points, or 'around', a hole");
     if (!wall.around().empty()) {
@@ -258,16 +261,41 @@ void Checker::check_wall(const v1::Wall& wall, const std::string& path) {
         problem(path + ".velocity", "a wall of a closed cavity can only move along itself");
 }
 
+/// What a wall lies around.
+Polygon Checker::outline_of(const std::string& around) const {
+    if (around == "region")
+        return region_;
+    for (const v1::Hole& hole : scene_.fluid().hole())
+        if (hole.name() == around)
+            return outline(hole);
+    return Polygon{};
+}
+
+/// Along an axis each component of the velocity has one condition.
+void Checker::check_slip(const v1::Wall& wall, const std::string& path) {
+    if (!wall.slip())
+        return;
+    if (scene_.fluid().formulation() == v1::Fluid::PAPER)
+        problem(path + ".slip",
+                "the paper's formulation knows no walls that slip; take the consistent one");
+    if (wall.has_rotation() || !is_zero(wall.velocity()))
+        problem(path + ".slip",
+                "a wall that slips moves nothing along itself; give it no velocity");
+    const Polygon sides =
+        wall.along_size() == 2 ? Polygon{wall.along(0), wall.along(1)} : outline_of(wall.around());
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+        const Point &a = sides[i], &b = sides[(i + 1) % sides.size()];
+        if (std::min(std::abs(a.x() - b.x()), std::abs(a.y() - b.y())) > tolerance_) {
+            problem(path + ".slip",
+                    "the wall '" + wall.name() + "' slips from " + at_text(a) + " to " + at_text(b)
+                        + ", which is not along an axis; turn the scene, or let it not slip");
+            return;
+        }
+    }
+}
+
 /// No side belongs to two walls.
 void Checker::check_sharing(const v1::Wall& wall, const std::string& path) {
-    const auto outline_of = [&](const std::string& around) {
-        if (around == "region")
-            return region_;
-        for (const v1::Hole& hole : scene_.fluid().hole())
-            if (hole.name() == around)
-                return outline(hole);
-        return Polygon{};
-    };
     const auto on = [&](const Polygon& polygon, const v1::Wall& one) {
         double length = 0;
         for (std::size_t i = 0; i < polygon.size(); ++i)

@@ -53,10 +53,10 @@ WallSums twin(Vec2 x, const Boundary& boundary, Place place) {
             const Vec2 gradW = -VF * r;
             const Vec2 xi = place == Place::before_straight_walls ? d1 * n : first * r;
             sums.C += gradW;
-            sums.velocity.S += q * gradW;
-            sums.velocity.K += 2 * VF * q;
-            sums.velocity.S_xi += outer(q * gradW, xi);
-            sums.velocity.K_xi += (2 * VF * q) * xi;
+            sums.u.S += q * gradW;
+            sums.u.K += 2 * VF * q;
+            sums.u.S_xi += outer(q * gradW, xi);
+            sums.u.K_xi += (2 * VF * q) * xi;
             sums.N_n += outer(dot(r, n) * gradW, n);
         }
     }
@@ -87,12 +87,12 @@ void compare(const Boundary& boundary,
         SCOPED_TRACE("particle at " + std::to_string(x.x) + ", " + std::to_string(x.y));
         EXPECT_NEAR(got.C.x, expected.C.x, scale / spacing);
         EXPECT_NEAR(got.C.y, expected.C.y, scale / spacing);
-        EXPECT_NEAR(got.velocity.S.x, expected.velocity.S.x, 2 * scale / spacing);
-        EXPECT_NEAR(got.velocity.S.y, expected.velocity.S.y, 2 * scale / spacing);
-        EXPECT_NEAR(got.velocity.K, expected.velocity.K, 4 * scale / (spacing * spacing));
-        EXPECT_NEAR(got.velocity.K_xi.x, expected.velocity.K_xi.x, 4 * scale / spacing);
-        EXPECT_NEAR(got.velocity.K_xi.y, expected.velocity.K_xi.y, 4 * scale / spacing);
-        expect_near(got.velocity.S_xi, expected.velocity.S_xi, scale);
+        EXPECT_NEAR(got.u.S.x, expected.u.S.x, 2 * scale / spacing);
+        EXPECT_NEAR(got.u.S.y, expected.u.S.y, 2 * scale / spacing);
+        EXPECT_NEAR(got.u.K, expected.u.K, 4 * scale / (spacing * spacing));
+        EXPECT_NEAR(got.u.K_xi.x, expected.u.K_xi.x, 4 * scale / spacing);
+        EXPECT_NEAR(got.u.K_xi.y, expected.u.K_xi.y, 4 * scale / spacing);
+        expect_near(got.u.S_xi, expected.u.S_xi, scale);
         expect_near(got.N_n, expected.N_n, scale);
     }
 }

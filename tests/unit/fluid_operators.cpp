@@ -174,6 +174,29 @@ TEST(FluidOperators, QuadraticFieldBesideAnAdiabaticWall) {
     }
 }
 
+TEST(FluidOperators, QuadraticFieldBesideAWallThatSlips) {
+    // u = y^2 - 2 x has no slope across the bottom, v = x y vanishes there; u is known on the left.
+    Config config = closed({{0, 0}, {1.5, 0}, {1.5, 1.5}, {0, 1.5}}, spacing, false);
+    config.walls = {{.name = "bottom", .from = {0, 0}, .to = {1.5, 0}, .slip = true}};
+    Boundary boundary(config, {}, {});
+    for (const double disorder : {0.0, 0.1}) {
+        const Result r = evaluate(
+            boundary,
+            config,
+            disorder,
+            [](Vec2 x) { return x.y * x.y - 2 * x.x; },
+            [](Vec2 x) { return x.x * x.y; },
+            [](Vec2) { return 0.0; });
+        for (std::size_t a = 0; a < r.particles.size(); ++a) {
+            const Vec2 x = r.particles.position(a);
+            if (std::abs(x.x - 0.75) < 0.4 && x.y < 1.1) {
+                EXPECT_NEAR(r.evaluation.viscous[a].x, 2, exact_laplacian) << x.x << ", " << x.y;
+                EXPECT_NEAR(r.evaluation.viscous[a].y, 0, exact_laplacian) << x.x << ", " << x.y;
+            }
+        }
+    }
+}
+
 TEST(FluidOperators, TensorIsTheUnitTensorInsideALattice) {
     const Config config = closed({{0, 0}, {1.5, 0}, {1.5, 1.5}, {0, 1.5}}, spacing, true);
     Boundary boundary(config, {}, {});

@@ -156,6 +156,9 @@ TEST(SceneCheck, ProbeNamesAndPlaces) {
     expect_fault("fluid.hole=[{ name = 'h', disc = { centre = [2, 2], radius = 0.5 } }]",
                  "the point [2, 2] lies in the hole 'h'");
     expect_fault("fluid.hole=[{ name = 'h' }]", "fluid.hole[0] needs either 'corners' or 'disc'");
+    expect_fault("fluid.wall[0].slip=true", "give it no velocity");
+    expect_fault("fluid.wall=[{ name = 'w', along = [[0, 0], [4, 4]], slip = true }]",
+                 "not along an axis");
     expect_fault("fluid.wall=[{ name = 'w', around = 'region', temperature = 1, heat_flux = 't' }]",
                  "prescribes a temperature and a heat flux");
     expect_fault("fluid.wall=[{ name = 'w', around = 'core' }]", "there is no hole 'core'");

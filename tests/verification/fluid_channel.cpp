@@ -1,0 +1,53 @@
+// Straight flows and a box of vortices: walls that slip, bodies forces, known in closed form.
+
+#include "fluid_order.hpp"
+#include "fluid_solver/fluid.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace duet::fluid::test {
+namespace {
+
+const double pi = std::numbers::pi;
+
+/// u = (sin kx cos ky, -cos kx sin ky) U exp(-2 k^2 nu t), k = pi, in a unit square whose walls
+/// slip: an exact solution of the Navier-Stokes equations. Root mean square error relative to U at
+/// the time asked for.
+double taylor_green_error(double spacing) {
+    const double U = 5, time = 0.02;
+    Config config;
+    config.spacing = spacing;
+    config.region = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    config.kinematic_viscosity = 1;
+    config.sound_speed = 300; // as the pressure dies, div v = -(dp/dt)/(rho c^2): kept below 1e-3
+    config.walls = {{.name = "all", .around = 0, .slip = true}};
+    Fluid fluid(config);
+    const auto velocity = [&](Vec2 x, double t) {
+        const double now = U * std::exp(-2 * pi * pi * t);
+        return now
+               * Vec2{std::sin(pi * x.x) * std::cos(pi * x.y),
+                      -std::cos(pi * x.x) * std::sin(pi * x.y)};
+    };
+    fluid.set_fields([&](Vec2 x) {
+        const double p = 0.25 * U * U * (std::cos(2 * pi * x.x) + std::cos(2 * pi * x.y));
+        return Values{0, velocity(x, 0), p, {}};
+    });
+    fluid.advance(time);
+    const Snapshot s = fluid.snapshot();
+    double squares = 0;
+    for (std::size_t i = 0; i < s.position.size(); ++i) {
+        const Vec2 error = s.velocity[i] - velocity(s.position[i], time);
+        squares += dot(error, error);
+    }
+    return std::sqrt(squares / static_cast<double>(s.position.size())) / U;
+}
+
+TEST(FluidChannel, VorticesInABoxThatSlipsDecayAtSecondOrder) {
+    expect_order({1.0 / 16, 1.0 / 24, 1.0 / 36}, taylor_green_error, 1.8, 0.002);
+}
+
+} // namespace
+} // namespace duet::fluid::test
