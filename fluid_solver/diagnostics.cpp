@@ -184,8 +184,9 @@ std::vector<std::string> Fluid::Implementation::model() const {
     size << particles.size() << " fluid particles of " << volume << " m2 at a spacing of "
          << config.spacing << " m in " << compartments
          << (compartments == 1 ? " compartment" : " compartments");
-    physics << (paper_ ? "weakly compressible flow, "
-                       : "incompressible flow by artificial compressibility, ")
+    physics << (paper_   ? "weakly compressible flow, "
+                : still_ ? "no flow as long as nothing moves, "
+                         : "incompressible flow by artificial compressibility, ")
             << (heat_ ? "heat" : "no heat (one temperature)") << ", "
             << (buoyant_ ? "Boussinesq buoyancy" : "no buoyancy")
             << (forced_ ? ", body force" : "");

@@ -64,6 +64,9 @@ Fluid::Implementation::Implementation(const Config& c,
                || (wall.temperature && wall.temperature->changes())
                || (wall.rotation && wall.rotation->rate.changes());
     });
+    walls_move_ = std::any_of(config.walls.begin(), config.walls.end(), [](const Wall& wall) {
+        return wall.rotation || !wall.velocity.is_number() || norm(wall.velocity({}, 0)) > 0;
+    });
     passed.impulse.resize(boundary_.interface_nodes());
     passed.heat.resize(boundary_.interface_segments());
     for (std::size_t w = 0; w < config.walls.size(); ++w) {
@@ -90,6 +93,7 @@ void Fluid::Implementation::start() {
     sound_speed_ = 0; // the old one says nothing of the new fields
     measure();
     adapt_sound_speed();
+    still_ = at_rest({});
     initial_kinetic_energy_ = kinetic_energy();
     initial_heat_ = config.density * config.heat_capacity * volume
                     * sum([&](std::size_t a) { return particles.fields[a].T; });
@@ -118,7 +122,7 @@ double Fluid::Implementation::stable_step() const {
     const double dx = config.spacing;
     const double diffusivity =
         heat_ ? config.conductivity / (config.density * config.heat_capacity) : 0;
-    const double slowest = std::max(config.kinematic_viscosity, diffusivity);
+    const double slowest = std::max(still_ ? 0 : config.kinematic_viscosity, diffusivity);
     double limit = std::numeric_limits<double>::infinity();
     if (slowest > 0) {
         limit = std::min(limit, courant_diffusion * dx * dx / slowest);
@@ -145,6 +149,7 @@ int Fluid::Implementation::advance(double window,
         wall.torque = 0;
     }
     follow_interface(motion);
+    still_ = at_rest(motion);
     int steps = 0;
     for (double elapsed = 0; elapsed < window; ++steps) {
         const double left = window - elapsed;
@@ -176,6 +181,9 @@ void Fluid::Implementation::step(double dt, double elapsed, const Motion& motion
     if (paper_) {
         return paper_step(dt, elapsed, motion);
     }
+    if (still_) {
+        return conduct(dt, elapsed, motion);
+    }
     begin_step(dt, elapsed, motion);
     {
         const Stamp stamp(phase_seconds_[evaluating]);
@@ -196,6 +204,37 @@ void Fluid::Implementation::step(double dt, double elapsed, const Motion& motion
         correct_fields(dt);
     }
     finish_step(dt, elapsed, motion);
+}
+
+/// Whether nothing moves or presses, and nothing will in this window.
+bool Fluid::Implementation::at_rest(const Motion& motion) const {
+    const auto moves = [](const InterfaceState* state) {
+        return state != nullptr
+               && std::any_of(state->velocity.begin(), state->velocity.end(), [](Vec2 v) {
+                      return norm(v) > 0;
+                  });
+    };
+    return !buoyant_ && !forced_ && !walls_move_ && speed_ == 0 && pressure_range_ == 0
+           && !moves(motion.start) && !moves(motion.end)
+           && (motion.end == nullptr || motion.end->position == interface_position_);
+}
+
+/// A step of heat without flow: the particles stay where they are.
+void Fluid::Implementation::conduct(double dt, double elapsed, const Motion& motion) {
+    place_interface(elapsed + 0.5 * dt, motion);
+    if (heat_) {
+        {
+            const Stamp stamp(phase_seconds_[evaluating]);
+            evaluate(dt);
+            std::fill(evaluation_.shift.begin(), evaluation_.shift.end(), Vec2{});
+        }
+        const Stamp stamp(phase_seconds_[walls_and_closure]);
+        book(dt);
+        advance_temperature(dt);
+    }
+    place_interface(elapsed + dt, motion);
+    const Stamp stamp(phase_seconds_[moving]);
+    measure();
 }
 
 /// To the middle of the step: what all operators see.
@@ -425,19 +464,24 @@ void Fluid::Implementation::book_energy(double dt) {
                             });
 }
 
+/// Advances T and corrects it for the shift, so that it gains what has passed.
+void Fluid::Implementation::advance_temperature(double dt) {
+    const double capacity = config.density * config.heat_capacity * volume;
+    for (double& heat : passed_heat_) {
+        heat /= capacity;
+    }
+    const ClosureParts parts =
+        closure_.advance_temperature(particles, evaluation_, dt, passed_heat_);
+    totals_.closure_conduction += capacity * parts.conduction;
+    totals_.closure_conduction_abs += capacity * parts.conduction_abs;
+    totals_.closure_shift += capacity * parts.shift;
+    totals_.closure_shift_abs += capacity * parts.shift_abs;
+}
+
 /// Advances T, and corrects all fields for the shift: f += dr . grad f.
 void Fluid::Implementation::correct_fields(double dt) {
     if (heat_) {
-        const double capacity = config.density * config.heat_capacity * volume;
-        for (double& heat : passed_heat_) {
-            heat /= capacity;
-        }
-        const ClosureParts parts =
-            closure_.advance_temperature(particles, evaluation_, dt, passed_heat_);
-        totals_.closure_conduction += capacity * parts.conduction;
-        totals_.closure_conduction_abs += capacity * parts.conduction_abs;
-        totals_.closure_shift += capacity * parts.shift;
-        totals_.closure_shift_abs += capacity * parts.shift_abs;
+        advance_temperature(dt);
     }
     for_particles(particles.size(), config.threads, [&](std::size_t a) {
         const Vec2 dr = evaluation_.shift[a];

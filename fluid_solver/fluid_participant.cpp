@@ -2,9 +2,12 @@
 
 #include "fluid_solver/boundary.hpp"
 #include "fluid_solver/fluid_probes.hpp"
+#include "fluid_solver/scattered_state.hpp"
 
 #include "protocol/function.hpp"
+
 #include <algorithm>
+#include <memory>
 
 namespace duet::fluid {
 
@@ -65,6 +68,23 @@ Wall wall_of(const v1::Wall& wall, const v1::Fluid& fluid) {
     w.heat_flux = to_function(wall.heat_flux());
     w.slip = wall.slip();
     return w;
+}
+
+/// What the file holds, in place of the initial fields.
+void start_from(const std::string& file, Config& config) {
+    const auto state = std::make_shared<ScatteredState>(file);
+    const auto take = [&](ScatteredState::Field field, Function& initial) {
+        if (state->has(field)) {
+            initial = Function(
+                [state, field](double x, double y, double) {
+                    return state->at(field, {x, y});
+                },
+                false);
+        }
+    };
+    take(ScatteredState::temperature, config.initial_temperature);
+    take(ScatteredState::velocity_x, config.initial_velocity.x);
+    take(ScatteredState::velocity_y, config.initial_velocity.y);
 }
 
 /// Unpacks [N][2] and [N] arrays into the core's state, reusing its storage.
@@ -135,6 +155,9 @@ Config config_from_scene(const v1::Scene& scene, unsigned threads) {
     config.reference_temperature = fluid.reference_temperature();
     config.initial_temperature = to_function(fluid.initial_temperature());
     config.initial_velocity = to_function(fluid.initial_velocity());
+    if (!fluid.initial_state().empty()) {
+        start_from(fluid.initial_state(), config);
+    }
     config.gravity = to_vector(scene.gravity());
     config.body_force = to_function(fluid.body_force());
     for (const auto& wall : fluid.wall()) {

@@ -79,6 +79,8 @@ class Fluid::Implementation {
 
     // fluid.cpp
     void step(double dt, double elapsed, const Motion& motion);
+    void conduct(double dt, double elapsed, const Motion& motion);
+    bool at_rest(const Motion& motion) const;
     void follow_interface(const Motion& motion);
     void place_interface(double elapsed, const Motion& motion);
     void put_interface();
@@ -96,6 +98,7 @@ class Fluid::Implementation {
     void book_energy(double dt);
     double kinetic_energy() const;
     void pass(std::uint32_t cell, double heat, Vec2 impulse);
+    void advance_temperature(double dt);
     void correct_fields(double dt);
     void level();
     void measure();
@@ -130,8 +133,10 @@ class Fluid::Implementation {
     Closure closure_;
     Hydrostatics hydrostatics_;
     bool heat_ = false, buoyant_ = false;
-    bool forced_ = false;               ///< by a body force of the configuration
-    bool walls_change_ = false;         ///< their values, in time
+    bool forced_ = false;       ///< by a body force of the configuration
+    bool walls_change_ = false; ///< their values, in time
+    bool walls_move_ = false;
+    bool still_ = false;                ///< nothing moves, nor will in this window: heat alone
     Vec2 initial_momentum_;             ///< N s/m at t = 0
     double initial_heat_ = 0;           ///< J/m at t = 0
     double initial_kinetic_energy_ = 0; ///< J/m

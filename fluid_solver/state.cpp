@@ -9,7 +9,7 @@ namespace duet::fluid {
 
 namespace {
 
-constexpr std::uint64_t state_mark = 0x3244554c46544455; // layout of the bytes below
+constexpr std::uint64_t state_mark = 0x3344554c46544455; // layout of the bytes below
 
 class Writer {
   public:
@@ -96,6 +96,7 @@ void Fluid::Implementation::transfer(Archive& archive, Self& self) {
     archive(self.initial_kinetic_energy_);
     archive(self.initial_momentum_);
     archive(self.heat_);
+    archive(self.still_);
     archive(self.totals_);
     archive(self.mark_);
     for (auto& wall : self.walls) {

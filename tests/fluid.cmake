@@ -1,8 +1,12 @@
 duet_test(fluid_unit LABEL unit
     SOURCES unit/fluid_kernel.cpp unit/fluid_neighbours.cpp unit/fluid_boundary.cpp unit/fluid_ghosts.cpp
         unit/fluid_operators.cpp unit/fluid_walls.cpp unit/fluid_budget.cpp unit/fluid_pressure.cpp unit/fluid_paper.cpp
-        unit/fluid_state.cpp
+        unit/fluid_state.cpp unit/fluid_twins.cpp
     LIBRARIES duet_fluid_core)
+
+duet_test(fluid_participant_unit LABEL unit
+    SOURCES unit/fluid_scattered_state.cpp
+    LIBRARIES duet_fluid_participant)
 
 duet_test(fluid_verification LABEL verification
     SOURCES verification/fluid_slab.cpp verification/fluid_two_layers.cpp verification/fluid_cavity.cpp

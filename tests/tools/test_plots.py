@@ -53,6 +53,18 @@ class Plots(unittest.TestCase):
         self.assertTrue(self.has_colour(picture, inferno(0.0)[:3]), "the fluid at 1000 K")
         self.assertTrue(self.has_colour(picture, inferno(1.0)[:3]), "the plate at 2000 K")
 
+    def test_a_state_holds_every_particle(self):
+        state = self.folder / "state.csv"
+        result = run("state_of_run.py", self.folder, "-o", state, "--time", 1)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        table = numpy.genfromtxt(state, delimiter=",", names=True, skip_header=1)
+        with h5py.File(self.folder / "fluid.h5") as file:
+            frames = [file[name] for name in file if name.startswith("frame_")]
+            frame = next(frame for frame in frames if frame.attrs["time"] == 1)
+            self.assertTrue(numpy.allclose(table["x"], frame["position"][:, 0]))
+            self.assertTrue(numpy.allclose(table["temperature"], frame["temperature"][()]))
+            self.assertTrue(numpy.allclose(table["velocity_y"], frame["velocity"][:, 1]))
+
     def test_each_time_has_its_panel(self):
         one = self.draw("plot_fields.py", "--time", 1)
         three = self.draw("plot_fields.py", "--time", 0, 1, 2, "--arrows", "--mesh")

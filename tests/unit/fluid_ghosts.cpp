@@ -228,6 +228,83 @@ TEST(FluidGhosts, ABentWallIsOneWall) {
     compare(boundary, Place::beside_an_edge, {{1.5, 0.95}, {1.45, 0.99}}, 0.04);
 }
 
+/// The kernel's integral over what the ghosts fill, and over where `behind` holds.
+double filled(const Boundary& boundary, Vec2 x) {
+    const Ghosts ghosts(spacing);
+    const Kernel kernel(support_in_spacings * spacing);
+    std::vector<Contact> contacts;
+    boundary.contacts(x, contacts);
+    double sum = 0;
+    for (const Contact& contact : contacts) {
+        ghosts.for_each(contact, contacts, kernel.support(), [&](Vec2 r, double, double V, double) {
+            sum += V * kernel.value(norm(r));
+        });
+    }
+    return sum;
+}
+template <class Behind>
+double cut_off(Vec2 x, const Behind& behind) {
+    const Kernel kernel(support_in_spacings * spacing);
+    const double R = kernel.support(), step = spacing / 60;
+    double sum = 0;
+    for (double rx = -R + step / 2; rx < R; rx += step) {
+        for (double ry = -R + step / 2; ry < R; ry += step) {
+            sum += behind(x + Vec2{rx, ry}) ? step * step * kernel.value(std::hypot(rx, ry)) : 0;
+        }
+    }
+    return sum;
+}
+
+/// However long the segments are, from a thirtieth of a spacing to ten of them, ghosts fill what
+/// the body takes of the kernel (1 in all): a body with corners, and a round one.
+TEST(FluidGhosts, ShortAndLongSegmentsFillWhatTheyCutOff) {
+    const Config config = closed({{0, 0}, {4, 0}, {4, 4}, {0, 4}}, spacing, true);
+    const auto in_square = [](Vec2 y) { return y.x > 1 && y.x < 2 && y.y > 1 && y.y < 2; };
+    // A single ghost close by is worth 0.025; the mean over the places in a cell of their lattice
+    // is free of where it lies. What is left (0.008 before the corner) is the lattice's quadrature.
+    const auto mean = [](Vec2 x, const auto& integral) {
+        double sum = 0;
+        for (int k = 0; k < 25; ++k) {
+            sum += integral(x + spacing / 15 * Vec2{k % 5 - 2.0, k / 5 - 2.0}) / 25;
+        }
+        return sum;
+    };
+    for (const Vec2 x : {Vec2{1.5, 0.93}, {0.95, 0.95}, {0.9, 1.04}, {1.97, 2.08}, {2.2, 2}}) {
+        const double exact = mean(x, [&](Vec2 y) { return cut_off(y, in_square); });
+        for (const std::uint32_t count : {1u, 10u, 300u}) {
+            std::vector<Chain> chains;
+            InterfaceState state;
+            square_body({1, 1}, 1, count, chains, state);
+            const Boundary boundary(config, chains, state);
+            EXPECT_NEAR(mean(x, [&](Vec2 y) { return filled(boundary, y); }), exact, 0.01)
+                << count << " segments a side, particle at " << x.x << ", " << x.y;
+        }
+    }
+    for (const std::uint32_t count : {80u, 400u, 2500u}) { // 12, 2.5 and 0.4 % of a radius
+        Chain chain{{}, true};
+        InterfaceState state;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const double angle = 2 * std::acos(-1.0) * i / count;
+            chain.nodes.push_back(i);
+            state.position.push_back(Vec2{2, 2} + 1.2 * Vec2{std::cos(angle), std::sin(angle)});
+            state.velocity.push_back({});
+            state.temperature.push_back(0);
+        }
+        const Boundary boundary(config, {chain}, state);
+        for (const double d1 : {0.03, 0.08, 0.15}) {
+            const Vec2 x = Vec2{2, 2} + (1.2 + d1) * Vec2{0.6, 0.8};
+            // The tangent stands for the bend: 0.28 spacings of sagitta at the rim of the support.
+            EXPECT_NEAR(filled(boundary, x),
+                        cut_off(x,
+                                [](Vec2 y) {
+                                    return norm(y - Vec2{2, 2}) < 1.2;
+                                }),
+                        0.03)
+                << count << " segments, d1 = " << d1;
+        }
+    }
+}
+
 TEST(FluidGhosts, NarrowChannelSeesBothWalls) {
     const Boundary boundary(closed({{0, 0}, {2, 0}, {2, 0.3}, {0, 0.3}}, spacing, true), {}, {});
     compare(boundary, Place::before_straight_walls, {{1, 0.15}, {1, 0.05}});

@@ -1,0 +1,283 @@
+// The vector passes of the consistent formulation against obvious twins: each sum written out over
+// all pairs, in double precision, one particle at a time (docs/theory-fluid.md). The ghosts' sums
+// are taken as they are; fluid_ghosts has their twin.
+
+#include "fluid_solver/pressure.hpp"
+#include "fluid_solver/shifting.hpp"
+#include "fluid_support.hpp"
+
+#include <Eigen/Dense>
+#include <gtest/gtest.h>
+
+namespace duet::fluid::test {
+namespace {
+
+constexpr double spacing = 0.1, volume = spacing * spacing;
+constexpr double viscosity = 0.3, diffusivity = 0.7, shift_weight = 0.2 * volume;
+constexpr double density = 2, sound = 30, inner_step = 0.5 * spacing / sound;
+
+/// A room with a corner that juts out: heated floor, a lid that moves, a wall that slips, the
+/// others insulated; particles moved at random, fields without order.
+struct Room {
+    Room() {
+        config = closed(
+            {{0, 0}, {1.2, 0}, {1.2, 0.6}, {0.7, 0.6}, {0.7, 1.2}, {0, 1.2}}, spacing, false);
+        config.walls = {{.name = "floor", .from = {0, 0}, .to = {1.2, 0}, .temperature = 1.5},
+                        {.name = "lid", .from = {0, 1.2}, .to = {0.7, 1.2}, .velocity = {0.8, 0}},
+                        {.name = "left", .from = {0, 0}, .to = {0, 1.2}, .slip = true}};
+        boundary.emplace(config, std::vector<Chain>{}, InterfaceState{});
+        particles = cloud(*boundary, config, 0.15);
+        std::mt19937 random(11);
+        std::uniform_real_distribution<double> one(-1, 1);
+        for (Fields& f : particles.fields) {
+            f = {one(random), one(random), one(random), one(random)};
+        }
+        particles.compartment.assign(particles.size(), 0);
+        evaluation.run(particles,
+                       boundary->grid(),
+                       *boundary,
+                       {spacing, volume, viscosity, diffusivity, shift_weight, true});
+    }
+    Config config;
+    std::optional<Boundary> boundary;
+    Particles particles;
+    Evaluation evaluation{spacing, 1};
+};
+
+/// Whether a wall cuts the line from x to y.
+bool cut(const Boundary& boundary, Vec2 x, Vec2 y) {
+    return std::any_of(
+        boundary.segments().begin(), boundary.segments().end(), [&](const Segment& s) {
+            const Vec2 r = y - x, t = s.b - s.a;
+            const double across = cross(r, t);
+            const double f = cross(s.a - x, t) / across, g = cross(s.a - x, r) / across;
+            return across != 0 && f > 0 && f < 1 && g >= 0 && g <= 1;
+        });
+}
+
+/// What one field meets at the walls in sight.
+struct Walls {
+    Mat2 M;
+    Third third{};
+    DirichletSums known{};
+    Vec2 S_value;
+    double K_value = 0;
+};
+
+/// Sums over all other particles in sight: visit(b, x_ab, V F).
+template <class Visit>
+void over_pairs(const Room& room, std::size_t a, const Visit& visit) {
+    const Kernel& kernel = room.evaluation.kernel();
+    const Vec2 x = room.particles.position(a);
+    for (std::size_t b = 0; b < room.particles.size(); ++b) {
+        const Vec2 y = room.particles.position(b), d = x - y;
+        if (b != a && norm(d) < kernel.support() && !cut(*room.boundary, x, y)) {
+            visit(b, d, volume * kernel.slope_over_r(norm(d)));
+        }
+    }
+}
+
+struct Derivatives {
+    Mat2 L;
+    Vec2 gradient;
+    double laplacian = 0;
+};
+
+/// Gradient and Laplacian of the field f, exact for linear and quadratic fields.
+template <class Field>
+Derivatives derivatives(const Room& room, std::size_t a, const Walls& walls, const Field& f) {
+    Mat2 M = walls.M;
+    Third third = walls.third; // sum V F x_l x_j x_k
+    double s[2][2][2]{}, q[2][2][2][2]{};
+    Vec2 differences = walls.S_value - f(a) * walls.known.S;
+    over_pairs(room, a, [&](std::size_t b, Vec2 x, double VF) {
+        const double c[2] = {x.x, x.y}, r2 = dot(x, x);
+        M += outer(-VF * x, x);
+        differences += (VF * (f(b) - f(a))) * x;
+        for (std::size_t m = 0; m < 2; ++m) {
+            for (std::size_t jk = 0; jk < 3; ++jk) {
+                third[m][jk] += VF * c[m] * c[jk / 2] * c[(jk + 1) / 2];
+            }
+            for (std::size_t n = 0; n < 2; ++n) {
+                for (std::size_t i = 0; i < 2; ++i) {
+                    s[m][n][i] += VF * c[m] * c[n] * c[i] / r2;
+                    for (std::size_t j = 0; j < 2; ++j) {
+                        q[m][n][i][j] += VF * c[m] * c[n] * c[i] * c[j] / r2;
+                    }
+                }
+            }
+        }
+    });
+    Derivatives d;
+    d.L = inverse(M);
+    d.gradient = d.L * differences;
+    // sum_mn B_mn [-q_mnjk - s_mni A_ijk] = delta_jk + (K xi_j xi_k - K xi_i A_ijk)/2
+    Eigen::Matrix3d matrix;
+    Eigen::Vector3d right;
+    for (int jk = 0; jk < 3; ++jk) {
+        const auto k = static_cast<std::size_t>(jk);
+        const std::size_t first = k / 2, second = (k + 1) / 2;
+        const Vec2 A = d.L * Vec2{third[0][k], third[1][k]};
+        const auto column = [&](std::size_t m, std::size_t n) {
+            return -q[m][n][first][second] - s[m][n][0] * A.x - s[m][n][1] * A.y;
+        };
+        matrix.row(jk) << column(0, 0), column(0, 1) + column(1, 0), column(1, 1);
+        right[jk] =
+            (first == second ? 1 : 0) + 0.5 * (walls.known.K_xi_xi[k] - dot(walls.known.K_xi, A));
+    }
+    const Eigen::Vector3d solved = matrix.fullPivLu().solve(right);
+    Eigen::Matrix2d B;
+    B << solved[0], solved[1], solved[1], solved[2];
+    const Eigen::Vector2d eigen = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(B).eigenvalues();
+    double theta = 1; // of I + theta (B - I), so that its eigenvalues keep within 0.2 and 6
+    theta = eigen[0] < 0.2 ? std::min(theta, 0.8 / (1 - eigen[0])) : theta;
+    theta = eigen[1] > 6 ? std::min(theta, 5 / (eigen[1] - 1)) : theta;
+    B = Eigen::Matrix2d::Identity() + theta * (B - Eigen::Matrix2d::Identity());
+    Vec2 E = -1.0 * walls.known.K_xi;
+    d.laplacian = -(walls.K_value - walls.known.K * f(a));
+    over_pairs(room, a, [&](std::size_t b, Vec2 x, double VF) {
+        const double r2 = dot(x, x);
+        const double eBe =
+            (B(0, 0) * x.x * x.x + 2 * B(0, 1) * x.x * x.y + B(1, 1) * x.y * x.y) / r2;
+        d.laplacian += 2 * VF * eBe * (f(a) - f(b));
+        E += (2 * VF * eBe) * x;
+    });
+    d.laplacian -= dot(E, d.gradient);
+    return d;
+}
+
+WallSums wall_sums(const Room& room, std::size_t a, std::vector<Contact>& contacts) {
+    WallSums sums{};
+    room.boundary->contacts(room.particles.position(a), contacts);
+    room.evaluation.ghosts().sums(*room.boundary, contacts, sums);
+    if (!sums.slips) {
+        sums.v = sums.u;
+    }
+    return sums;
+}
+
+Walls walls_of(const WallSums& w, const DirichletSums& known, const NeumannSums& slope, int lane) {
+    return {known.S_xi + slope.N_n,
+            known.S_xi_xi + slope.N_d_n_n,
+            known,
+            {w.Sx_value[lane], w.Sy_value[lane]},
+            w.K_value[lane]};
+}
+
+/// Differences over their bound, the largest of all particles; how many have walls in sight.
+struct Largest {
+    double value = 0;
+    void see(double difference, double bound) {
+        value = std::max(value, std::abs(difference) / bound);
+    }
+};
+
+TEST(FluidTwins, GradientsLaplaciansAndShift) {
+    const Room room;
+    // In single precision each of some 20 terms is rounded in a few places, 1e-7 of it: terms of
+    // 1/dx in gradients and of 4/dx^2 in Laplacians, the latter multiplied by B and E of up to ten.
+    const double slope_bound = 1e-6 / spacing, laplacian_bound = 1e-5 / volume;
+    Largest gradient, laplacian, shift;
+    int beside_walls = 0;
+    std::vector<Contact> contacts;
+    for (std::size_t a = 0; a < room.particles.size(); ++a) {
+        const WallSums w = wall_sums(room, a, contacts);
+        beside_walls += contacts.empty() ? 0 : 1;
+        const auto& fields = room.particles.fields;
+        const auto u = derivatives(
+            room, a, walls_of(w, w.u, w.u_slips, 0), [&](std::size_t b) { return fields[b].u; });
+        const auto v = derivatives(
+            room, a, walls_of(w, w.v, w.v_slips, 1), [&](std::size_t b) { return fields[b].v; });
+        const auto T =
+            derivatives(room, a, walls_of(w, w.temperature, w.adiabatic, 3), [&](std::size_t b) {
+                return fields[b].T;
+            });
+        const Slope &gx = room.evaluation.slope_x[a], &gy = room.evaluation.slope_y[a];
+        gradient.see(gx.u - u.gradient.x, slope_bound);
+        gradient.see(gy.u - u.gradient.y, slope_bound);
+        gradient.see(gx.v - v.gradient.x, slope_bound);
+        gradient.see(gy.v - v.gradient.y, slope_bound);
+        gradient.see(gx.T - T.gradient.x, slope_bound);
+        gradient.see(gy.T - T.gradient.y, slope_bound);
+        laplacian.see(room.evaluation.viscous[a].x / viscosity - u.laplacian, laplacian_bound);
+        laplacian.see(room.evaluation.viscous[a].y / viscosity - v.laplacian, laplacian_bound);
+        laplacian.see(room.evaluation.heating[a] / diffusivity - T.laplacian, laplacian_bound);
+
+        Vec2 concentration = w.C, push;
+        over_pairs(room, a, [&](std::size_t, Vec2 x, double VF) { concentration += VF * x; });
+        for (const Contact& contact : contacts) {
+            const double short_of = std::max(0.0, 0.3 * spacing - contact.distance);
+            push -= (contact.on_wall() ? 0.2 * short_of : 0) * contact.normal;
+        }
+        Vec2 dr = push - shift_weight * concentration;
+        dr *= norm(dr) > 0.2 * spacing ? 0.2 * spacing / norm(dr) : 1;
+        shift.see(norm(room.evaluation.shift[a] - dr), 3e-7 * spacing);
+    }
+    EXPECT_GT(beside_walls, 40);
+    EXPECT_LT(gradient.value, 1);
+    EXPECT_LT(laplacian.value, 1);
+    EXPECT_LT(shift.value, 1);
+}
+
+/// One inner step: v by pressure, viscous term and buoyancy, then p with the new v.
+TEST(FluidTwins, AnInnerStep) {
+    Room room;
+    const std::vector<Fields> old = room.particles.fields;
+    Hydrostatics hydrostatics(density, 0.2, {3, -40});
+    hydrostatics.levels.resize(1);
+    hydrostatics.levels[0] = {0.4, {0.5, 0.5}};
+    InnerSteps inner;
+    inner.count = 1;
+    inner.step = inner_step;
+    inner.density = density;
+    inner.sound_speed = sound;
+    inner.hydrostatics = &hydrostatics;
+    inner.smoothing_length = room.evaluation.kernel().smoothing_length();
+    Pressure(1).run<true>(room.particles, room.evaluation, inner);
+    const std::vector<Fields>& stepped = room.particles.fields;
+
+    const std::size_t n = room.particles.size();
+    std::vector<Vec2> slope(n), velocity(n);
+    std::vector<WallSums> sums(n);
+    std::vector<Contact> contacts;
+    Largest moved, pressed;
+    for (std::size_t a = 0; a < n; ++a) {
+        sums[a] = wall_sums(room, a, contacts);
+        Mat2 M = sums[a].N_n;
+        Vec2 differences;
+        over_pairs(room, a, [&](std::size_t b, Vec2 x, double VF) {
+            M += outer(-VF * x, x);
+            differences += (VF * (old[b].p - old[a].p)) * x;
+        });
+        const Vec2 b = (old[a].T - 0.4) * Vec2{3, -40};
+        slope[a] = inverse(M) * (differences + density * (sums[a].N_n * b));
+        velocity[a] = Vec2{old[a].u, old[a].v}
+                      + inner_step * (room.evaluation.viscous[a] + b - (1 / density) * slope[a]);
+        moved.see(norm(velocity[a] - Vec2{stepped[a].u, stepped[a].v}), 3e-7);
+    }
+    for (std::size_t a = 0; a < n; ++a) {
+        const WallSums& w = sums[a];
+        const Vec2 du = derivatives(room, a, walls_of(w, w.u, w.u_slips, 0), [&](std::size_t b) {
+                            return velocity[b].x;
+                        }).gradient;
+        const Vec2 dv = derivatives(room, a, walls_of(w, w.v, w.v_slips, 1), [&](std::size_t b) {
+                            return velocity[b].y;
+                        }).gradient;
+        double psi = 0;
+        over_pairs(room, a, [&](std::size_t b, Vec2 x, double VF) {
+            psi += 2 * VF * (old[a].p - old[b].p - 0.5 * dot(slope[a] + slope[b], x));
+        });
+        const WallTerms* wall = room.evaluation.wall(a);
+        const double softness = wall ? wall->softness : 1;
+        const double rate = -density * sound * sound * softness * (du.x + dv.y)
+                            + dot(velocity[a], slope[a])
+                            + 0.1 * inner.smoothing_length * sound * psi;
+        // Of rho c^2 dt (1/dx), the size of what is added, 3e-7.
+        pressed.see(stepped[a].p - old[a].p - inner_step * rate, 3e-7 * density * sound);
+    }
+    EXPECT_LT(moved.value, 1);
+    EXPECT_LT(pressed.value, 1);
+}
+
+} // namespace
+} // namespace duet::fluid::test
