@@ -3,6 +3,7 @@
 //
 //     build/release/bin/bench_fluid_steps 1000 100 1       (n, outer steps, threads)
 
+#include "benchmarks/heated_cavity.hpp"
 #include "fluid_solver/fluid.hpp"
 
 #include <sys/resource.h>
@@ -19,17 +20,9 @@ int main(int argc, char** argv) {
         std::cerr << "usage: bench_fluid_steps PARTICLES_ALONG_A_SIDE OUTER_STEPS THREADS\n";
         return 1;
     }
-    Config config; // lengths in L, time in L^2/alpha, Ra = 1e6
-    config.spacing = 1.0 / std::atoi(argv[1]);
-    config.region = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
-    config.kinematic_viscosity = 0.71;
-    config.conductivity = 1;
-    config.thermal_expansion = 1;
-    config.gravity = {0, -0.71e6};
-    config.initial_temperature = config.reference_temperature = 0.5;
+    Config config = heated_cavity(1e6, 1.0 / std::atoi(argv[1]));
     config.disorder = 0.1;
     config.threads = std::atoi(argv[3]);
-    config.walls = {{"hot", {0, 0}, {0, 1}, 1.0, {}}, {"cold", {1, 0}, {1, 1}, 0.0, {}}};
     Fluid fluid(config);
     fluid.set_fields([](Vec2 x) {
         const double pi = std::numbers::pi, sx = std::sin(pi * x.x), sy = std::sin(pi * x.y);

@@ -147,5 +147,23 @@ TEST(FluidWalls, BodyForceIsCarriedByTheWalls) {
     EXPECT_NEAR(fluid.at({0.5, 0.3}).pressure - fluid.at({0.5, 0.7}).pressure, 0.8, 0.01);
 }
 
+/// c >= 10 sqrt(|b| dx): without viscosity nothing else sets it before the fluid moves, and the
+/// pressure that balances the force has to be built up.
+TEST(FluidWalls, BodyForceSetsTheSoundSpeed) {
+    for (const double viscosity : {1e-6, 0.0}) {
+        Config config = closed({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, 0.05, false);
+        config.kinematic_viscosity = viscosity;
+        config.body_force = {0.6, -0.8};
+        Fluid fluid(config);
+        EXPECT_NEAR(fluid.ledger().sound_speed, 10 * std::sqrt(0.05), 1e-9);
+        fluid.advance(0.5);
+        const Ledger l = fluid.ledger();
+        EXPECT_GE(l.sound_speed, 10 * std::sqrt(0.05) * (1 - 1e-9));
+        // Falling freely the fluid would be at 0.5 m/s by now.
+        EXPECT_LT(l.max_speed, 0.1) << "viscosity " << viscosity;
+        EXPECT_EQ(l.wall_hits, 0u);
+    }
+}
+
 } // namespace
 } // namespace duet::fluid::test
