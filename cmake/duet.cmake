@@ -20,7 +20,8 @@ function(duet_library name)
 endfunction()
 
 # duet_test(NAME LABEL LABEL SOURCES ... LIBRARIES ...): one GoogleTest program; each TEST is a ctest.
-# Tests of real processes measure how soon a failure is seen, so they run alone.
+# Tests of real processes measure how soon a failure is seen, so they run alone. Threads sleep where they wait for each
+# other, as in a run: with more tests than cores those that spin take the time of the others.
 function(duet_test name)
     cmake_parse_arguments(arg "" "LABEL;TIMEOUT" "SOURCES;LIBRARIES" ${ARGN})
     if(NOT arg_TIMEOUT)
@@ -33,5 +34,5 @@ function(duet_test name)
     add_executable(${name} ${arg_SOURCES})
     target_link_libraries(${name} PRIVATE duet_options ${arg_LIBRARIES} GTest::gtest_main)
     target_compile_definitions(${name} PRIVATE DUET_SOURCE_DIR="${PROJECT_SOURCE_DIR}" DUET_BINARY_DIR="${PROJECT_BINARY_DIR}")
-    gtest_discover_tests(${name} DISCOVERY_TIMEOUT 30 TEST_PREFIX "${arg_LABEL}." PROPERTIES LABELS ${arg_LABEL} TIMEOUT ${arg_TIMEOUT} RUN_SERIAL ${alone})
+    gtest_discover_tests(${name} DISCOVERY_TIMEOUT 30 TEST_PREFIX "${arg_LABEL}." PROPERTIES ENVIRONMENT "OMP_WAIT_POLICY=passive" LABELS ${arg_LABEL} TIMEOUT ${arg_TIMEOUT} RUN_SERIAL ${alone})
 endfunction()

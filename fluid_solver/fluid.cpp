@@ -113,11 +113,6 @@ void Fluid::Implementation::set_fields(const std::function<Values(Vec2)>& field)
     start();
 }
 
-/// Largest speed of the flow, which from rest is that of the walls and bodies that will drive it.
-double Fluid::Implementation::fastest() const {
-    return std::max(speed_, boundary_.speed());
-}
-
 double Fluid::Implementation::stable_step() const {
     const double dx = config.spacing;
     const double diffusivity =
@@ -366,28 +361,6 @@ void Fluid::Implementation::take_body_force(double now) {
     }
 }
 
-/// m/s2 on a particle: buoyancy and the given force.
-Vec2 Fluid::Implementation::body_force(std::size_t a) const {
-    return (buoyant_ ? hydrostatics_.force(particles.fields[a].T) : Vec2{})
-           + (forced_ ? given_force_[a] : Vec2{});
-}
-
-/// Books the impulse of the body forces in this step.
-void Fluid::Implementation::book_body_force(double dt) {
-    if (buoyant_ || forced_) {
-        totals_.impulse_from_body_force +=
-            (dt * config.density * volume)
-            * Vec2{sum([&](std::size_t a) { return body_force(a).x; }),
-                   sum([&](std::size_t a) { return body_force(a).y; })};
-    }
-}
-
-Vec2 Fluid::Implementation::momentum() const {
-    const double m = config.density * volume;
-    return {m * sum([&](std::size_t a) { return particles.fields[a].u; }),
-            m * sum([&](std::size_t a) { return particles.fields[a].v; })};
-}
-
 void Fluid::Implementation::accelerate(double dt) {
     InnerSteps inner;
     inner.count = static_cast<int>(
@@ -402,66 +375,6 @@ void Fluid::Implementation::accelerate(double dt) {
     } else {
         pressure_.run<false>(particles, evaluation_, inner);
     }
-}
-
-/// Books what passes through each wall cell in this step.
-void Fluid::Implementation::book(double dt) {
-    wall_estimate_.run(
-        boundary_,
-        evaluation_,
-        particles,
-        hydrostatics_,
-        {config.conductivity, config.kinematic_viscosity, config.density, config.heat_capacity},
-        given_force_);
-    book_body_force(dt);
-    passed_heat_.assign(compartments, 0);
-    for (std::size_t c = 0; c < boundary_.cells().size(); ++c) {
-        const double length = boundary_.cells()[c].length;
-        const WallLoad& load = wall_estimate_.loads()[c];
-        const double heat = heat_ ? dt * length * load.heat_flux : 0;
-        passed_heat_[load.compartment] += heat;
-        pass(static_cast<std::uint32_t>(c), heat, (dt * length) * load.traction);
-    }
-}
-
-/// Books heat into the fluid and an impulse on the wall at one wall cell.
-void Fluid::Implementation::pass(std::uint32_t c, double heat, Vec2 impulse) {
-    const WallCell& cell = boundary_.cells()[c];
-    const Segment& segment = boundary_.segments()[cell.segment];
-    const Vec2 velocity = (1 - cell.centre) * boundary_.velocity(segment.node_a)
-                          + cell.centre * boundary_.velocity(segment.node_b);
-    if (cell.segment < boundary_.interface_segments()) {
-        passed.heat[cell.segment] -= heat;
-        passed.impulse[segment.node_a] += (1 - cell.centre) * impulse;
-        passed.impulse[segment.node_b] += cell.centre * impulse;
-        totals_.work_from_interface -= dot(impulse, velocity);
-        return;
-    }
-    totals_.heat_from_walls += heat;
-    totals_.impulse_from_walls -= impulse;
-    totals_.work_from_walls -= dot(impulse, velocity);
-    if (segment.wall != none) {
-        WallReport& wall = walls[segment.wall];
-        wall.heat_flow += heat;
-        wall.force += impulse;
-        wall.torque += cross(segment.a + cell.centre * (segment.b - segment.a), impulse);
-    }
-}
-
-/// Books the power of the body forces and the viscous dissipation 2 mu D:D in this step.
-void Fluid::Implementation::book_energy(double dt) {
-    const double mass = config.density * volume;
-    if (buoyant_ || forced_) {
-        totals_.body_force_work += dt * mass * sum([&](std::size_t a) {
-                                       const Fields& f = particles.fields[a];
-                                       return dot(body_force(a), {f.u, f.v});
-                                   });
-    }
-    totals_.viscous_loss += dt * mass * config.kinematic_viscosity * sum([&](std::size_t a) {
-                                const Slope &x = evaluation_.slope_x[a],
-                                            &y = evaluation_.slope_y[a];
-                                return 2 * (x.u * x.u + y.v * y.v) + (y.u + x.v) * (y.u + x.v);
-                            });
 }
 
 /// Advances T and corrects it for the shift, so that it gains what has passed.
@@ -491,106 +404,6 @@ void Fluid::Implementation::correct_fields(double dt) {
         f.v += dr.x * gx.v + dr.y * gy.v;
         f.p += dr.x * gx.p + dr.y * gy.p;
     });
-}
-
-/// In a closed cavity the pressure is defined up to a constant: takes the mean out of each
-/// compartment, and finds the levels of the hydrostatic part.
-void Fluid::Implementation::level() {
-    if (config.pressure_level == PressureLevel::free) {
-        return;
-    }
-    const std::size_t n = particles.size();
-    means_.assign(chunks_of(n) * compartments, Lanes{});
-    for_chunks(n, config.threads, [&](std::size_t c, std::size_t first, std::size_t last) {
-        for (std::size_t a = first; a < last; ++a) {
-            const Fields& f = particles.fields[a];
-            means_[c * compartments + particles.compartment[a]] +=
-                Lanes{f.p, f.T, particles.x[a], particles.y[a]};
-        }
-    });
-    // The first chunk's place takes the means: sums over the chunks, in their order.
-    for (std::size_t k = 0; k < compartments; ++k) {
-        for (std::size_t c = 1; c < chunks_of(n); ++c) {
-            means_[k] += means_[c * compartments + k];
-        }
-        means_[k] /= compartment_size_[k];
-        if (buoyant_ && !paper_) { // the paper's pressure is the whole one
-            hydrostatics_.levels[k] = {means_[k][1], {means_[k][2], means_[k][3]}};
-        }
-    }
-    for_particles(n, config.threads, [&](std::size_t a) {
-        particles.fields[a].p -= means_[particles.compartment[a]][0];
-    });
-}
-
-void Fluid::Implementation::measure() {
-    const std::size_t n = particles.size();
-    extremes_.resize(chunks_of(n));
-    for_chunks(n, config.threads, [&](std::size_t c, std::size_t first, std::size_t last) {
-        Extremes e;
-        for (std::size_t a = first; a < last; ++a) {
-            const Fields& f = particles.fields[a];
-            e.speed2 = std::max(e.speed2, f.u * f.u + f.v * f.v);
-            e.lowest = std::min(e.lowest, f.p);
-            e.highest = std::max(e.highest, f.p);
-            e.body_force += norm(hydrostatics_.departure(f.T, particles.compartment[a])
-                                 + (forced_ ? given_force_[a] : Vec2{}));
-            e.lost +=
-                std::isfinite(f.u + f.v + f.p + f.T + particles.x[a] + particles.y[a]) ? 0 : 1;
-        }
-        extremes_[c] = e;
-    });
-    Extremes e = extremes_[0];
-    for (std::size_t c = 1; c < extremes_.size(); ++c) {
-        const Extremes& other = extremes_[c];
-        e = {std::max(e.speed2, other.speed2),
-             std::min(e.lowest, other.lowest),
-             std::max(e.highest, other.highest),
-             e.body_force + other.body_force,
-             e.lost + other.lost};
-    }
-    speed_ = std::sqrt(e.speed2);
-    pressure_range_ = e.highest - e.lowest;
-    body_force_ = e.body_force / static_cast<double>(n);
-    const double limit = sound_speed_ > 0 ? 2 * sound_speed_ : speed_;
-    if (e.lost > 0 || !(speed_ <= limit)) {
-        std::size_t worst = 0;
-        for (std::size_t a = 0; a < n; ++a) {
-            const Fields& f = particles.fields[a];
-            if (!(f.u * f.u + f.v * f.v < e.speed2)) {
-                worst = a;
-                break;
-            }
-        }
-        throw Diverged("the fluid diverged after t = " + std::to_string(time) + " s near ("
-                       + std::to_string(particles.x[worst]) + ", "
-                       + std::to_string(particles.y[worst]) + "): speed " + std::to_string(speed_)
-                       + " m/s at a sound speed of " + std::to_string(sound_speed_) + " m/s, "
-                       + std::to_string(e.lost)
-                       + " particles not finite; refine the spacing, shorten the window, or raise "
-                         "the sound speed");
-    }
-}
-
-/// c from the flow and the pressure head: c >= 10 U, c^2 >= 10 dp/rho, c^2 >= 100 |b| dx, c >=
-/// nu/dx; rises at once and falls slowly, so that single peaks do not shake it.
-void Fluid::Implementation::adapt_sound_speed() {
-    if (config.sound_speed > 0) {
-        sound_speed_ = config.sound_speed;
-        return;
-    }
-    const double dx = config.spacing;
-    const double head = body_force_ * dx;
-    const double viscous = config.kinematic_viscosity / dx;
-    const double wanted = std::max({10 * fastest(),
-                                    std::sqrt(10 * pressure_range_ / config.density),
-                                    10 * std::sqrt(head),
-                                    viscous});
-    sound_speed_ = std::max(wanted, 0.99 * sound_speed_);
-    if (paper_ && !(sound_speed_ > 0)) { // its density is rho0 + p/c^2
-        throw SceneError("the paper's formulation needs a speed of sound, and nothing in this "
-                         "scene sets one; give fluid.sound_speed");
-    }
 }
 
 Fluid::Fluid(const Config& config,

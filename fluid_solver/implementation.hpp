@@ -90,21 +90,27 @@ class Fluid::Implementation {
     void begin_step(double dt, double elapsed, const Motion& motion);
     void finish_step(double dt, double elapsed, const Motion& motion);
     void take_body_force(double now);
+    void accelerate(double dt);
+    void advance_temperature(double dt);
+    void correct_fields(double dt);
+    void start();
+
+    // booking.cpp
     Vec2 body_force(std::size_t a) const;
     void book_body_force(double dt);
     Vec2 momentum() const;
-    void accelerate(double dt);
     void book(double dt);
     void book_energy(double dt);
-    double kinetic_energy() const;
     void pass(std::uint32_t cell, double heat, Vec2 impulse);
-    void advance_temperature(double dt);
-    void correct_fields(double dt);
+
+    // sound.cpp
     void level();
     void measure();
     double fastest() const;
     void adapt_sound_speed();
-    void start();
+
+    // diagnostics.cpp
+    double kinetic_energy() const;
 
     /// Sum of term(a) over the particles, in fixed chunks.
     template <class Term>

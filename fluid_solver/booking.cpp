@@ -1,0 +1,90 @@
+// What is booked in a step: heat, impulse and work through the walls, the body forces, the
+// dissipation.
+
+#include "fluid_solver/implementation.hpp"
+
+namespace duet::fluid {
+
+/// m/s2 on a particle: buoyancy and the given force.
+Vec2 Fluid::Implementation::body_force(std::size_t a) const {
+    return (buoyant_ ? hydrostatics_.force(particles.fields[a].T) : Vec2{})
+           + (forced_ ? given_force_[a] : Vec2{});
+}
+
+/// Books the impulse of the body forces in this step.
+void Fluid::Implementation::book_body_force(double dt) {
+    if (buoyant_ || forced_) {
+        totals_.impulse_from_body_force +=
+            (dt * config.density * volume)
+            * Vec2{sum([&](std::size_t a) { return body_force(a).x; }),
+                   sum([&](std::size_t a) { return body_force(a).y; })};
+    }
+}
+
+Vec2 Fluid::Implementation::momentum() const {
+    const double m = config.density * volume;
+    return {m * sum([&](std::size_t a) { return particles.fields[a].u; }),
+            m * sum([&](std::size_t a) { return particles.fields[a].v; })};
+}
+
+/// Books what passes through each wall cell in this step.
+void Fluid::Implementation::book(double dt) {
+    wall_estimate_.run(
+        boundary_,
+        evaluation_,
+        particles,
+        hydrostatics_,
+        {config.conductivity, config.kinematic_viscosity, config.density, config.heat_capacity},
+        given_force_);
+    book_body_force(dt);
+    passed_heat_.assign(compartments, 0);
+    for (std::size_t c = 0; c < boundary_.cells().size(); ++c) {
+        const double length = boundary_.cells()[c].length;
+        const WallLoad& load = wall_estimate_.loads()[c];
+        const double heat = heat_ ? dt * length * load.heat_flux : 0;
+        passed_heat_[load.compartment] += heat;
+        pass(static_cast<std::uint32_t>(c), heat, (dt * length) * load.traction);
+    }
+}
+
+/// Books heat into the fluid and an impulse on the wall at one wall cell.
+void Fluid::Implementation::pass(std::uint32_t c, double heat, Vec2 impulse) {
+    const WallCell& cell = boundary_.cells()[c];
+    const Segment& segment = boundary_.segments()[cell.segment];
+    const Vec2 velocity = (1 - cell.centre) * boundary_.velocity(segment.node_a)
+                          + cell.centre * boundary_.velocity(segment.node_b);
+    if (cell.segment < boundary_.interface_segments()) {
+        passed.heat[cell.segment] -= heat;
+        passed.impulse[segment.node_a] += (1 - cell.centre) * impulse;
+        passed.impulse[segment.node_b] += cell.centre * impulse;
+        totals_.work_from_interface -= dot(impulse, velocity);
+        return;
+    }
+    totals_.heat_from_walls += heat;
+    totals_.impulse_from_walls -= impulse;
+    totals_.work_from_walls -= dot(impulse, velocity);
+    if (segment.wall != none) {
+        WallReport& wall = walls[segment.wall];
+        wall.heat_flow += heat;
+        wall.force += impulse;
+        wall.torque += cross(segment.a + cell.centre * (segment.b - segment.a), impulse);
+    }
+}
+
+/// Books the power of the body forces and the viscous dissipation 2 mu D:D in this step.
+void Fluid::Implementation::book_energy(double dt) {
+    const double mass = config.density * volume;
+    if (buoyant_ || forced_) {
+        totals_.body_force_work += dt * mass * sum([&](std::size_t a) {
+                                       const Fields& f = particles.fields[a];
+                                       return dot(body_force(a), {f.u, f.v});
+                                   });
+    }
+    totals_.viscous_loss += dt * mass * config.kinematic_viscosity * sum([&](std::size_t a) {
+                                const Slope &x = evaluation_.slope_x[a],
+                                            &y = evaluation_.slope_y[a];
+                                return 2 * (x.u * x.u + y.v * y.v) + (y.u + x.v) * (y.u + x.v);
+                            });
+}
+
+} // namespace duet::fluid
