@@ -5,6 +5,7 @@
 #include "orchestrator/progress.hpp"
 #include "orchestrator/schema.hpp"
 #include "protocol/function.hpp"
+#include "protocol/implicit_worth.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,9 +18,6 @@ namespace {
 
 // Rough constants of the estimate, from runs on one core of an ordinary machine.
 constexpr double particle_steps_per_second = 1.3e6; // full particle steps a CPU second
-// What an implicit step costs in explicit ones (docs/performance.md): of a body that heats itself,
-// of one that does not, and of heat alone.
-constexpr double heated_step_worth = 120, unheated_step_worth = 30, heat_step_worth = 80;
 constexpr double node_steps_per_second = 1e8; // heat steps of a solid's node a CPU second
 constexpr double bytes_per_particle = 1500;
 constexpr double bytes_per_node = 500;
@@ -134,12 +132,6 @@ std::vector<double> temperatures(const v1::Scene& scene) {
     return all;
 }
 
-/// By its own compression (31).
-bool heats_itself(const v1::Body& body) {
-    return body.motion() == v1::Body::DEFORMABLE && body.thermoelastic_heating()
-           && body.thermal_expansion() != 0;
-}
-
 bool heat_released(const v1::Scene& scene) {
     for (const v1::Wall& wall : scene.fluid().wall())
         if (!protocol::is_zero(wall.heat_flux()))
@@ -240,9 +232,7 @@ double explicit_step(const v1::Body& body, const Estimate& e) {
 /// The solid decides with its own stable step; this is what it is likely to say.
 std::string automatic_steps(const v1::Body& body, const Estimate& e) {
     const double steps = e.window / explicit_step(body, e);
-    const double worth = body.motion() != v1::Body::DEFORMABLE ? heat_step_worth
-                         : heats_itself(body)                  ? heated_step_worth
-                                                               : unheated_step_worth;
+    const double worth = protocol::implicit_worth(body);
     if (!(steps > 0))
         return "explicit or implicit, as the first window shows";
     return std::string(steps > worth ? "implicit" : "explicit") + " (about "
@@ -262,9 +252,9 @@ void describe_solid(const v1::Scene& scene, const Estimate& e, std::string& out)
                   : body.motion() == v1::Body::RIGID      ? "rigid, moved by the forces on it"
                                                           : "left out (fixed and rigid)")
                + "; heat: "
-               + (heats_itself(body) ? "conduction and thermo-elastic heating"
-                  : e.heat           ? "conduction"
-                                     : "left out (one temperature everywhere)")
+               + (protocol::heats_itself(body) ? "conduction and thermo-elastic heating"
+                  : e.heat                     ? "conduction"
+                                               : "left out (one temperature everywhere)")
                + "; steps: "
                + (body.stepping() == v1::Body::IMPLICIT    ? "implicit"
                   : body.stepping() == v1::Body::AUTOMATIC ? automatic_steps(body, e)

@@ -88,6 +88,7 @@ class Checker {
     void
     check_conditions(const v1::Boundary& boundary, const v1::Body& body, const std::string& path);
     void check_probe(const v1::Probe& probe, const std::string& path);
+    void check_probed_boundary(const v1::Probe& probe, const std::string& path);
     void check_place(const v1::Probe& probe, const Point& p, const std::string& path);
     void check_check(const v1::Check& check, const std::string& path);
     void check_mean(const v1::Check& check, const v1::Probe* probe, const std::string& path);
@@ -559,10 +560,25 @@ void Checker::check_probe(const v1::Probe& probe, const std::string& path) {
             problem(path + ".body", "only the solid has bodies; a probe of the fluid takes a wall");
         must_be_known(probe.body(), "body", scene_.solid().body(), path + ".body");
     }
+    if (!probe.boundary().empty())
+        check_probed_boundary(probe, path);
     if (probe.has_at())
         check_place(probe, probe.at(), path + ".at");
     for (int i = 0; i < probe.line_size(); ++i)
         check_place(probe, probe.line(i), path + ".line");
+}
+
+void Checker::check_probed_boundary(const v1::Probe& probe, const std::string& path) {
+    if (probe.of() == v1::Probe::FLUID)
+        return problem(path + ".boundary",
+                       "only bodies have boundaries; a probe of the fluid takes a wall");
+    if (probe.has_at() || probe.line_size() > 0)
+        problem(path, "a probe is taken over a boundary, or at a point or along a line");
+    google::protobuf::RepeatedPtrField<v1::Boundary> known;
+    for (const v1::Body& body : scene_.solid().body())
+        if (probe.body().empty() || probe.body() == body.name())
+            known.MergeFrom(body.boundary());
+    must_be_known(probe.boundary(), "boundary", known, path + ".boundary");
 }
 
 /// The point, and its mirror image if one is asked for, lie where there is something to measure.

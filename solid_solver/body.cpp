@@ -161,9 +161,7 @@ std::uint32_t Body::advance(double length) {
 }
 
 Body::Plan Body::plan(double length) const {
-    // What an implicit step costs in explicit ones: measured, docs/performance.md.
-    const bool heated = mechanics_ && mechanics_->elasticity().heats_itself();
-    const double worth = !mechanics_ ? 80 : heated ? 120 : 30;
+    const double worth = config_.implicit_worth;
     const double limit = safety * stable_step();
     const double steps = limit > 0 ? std::max(1.0, std::ceil(length / limit)) : 1;
     if (config_.stepping != Stepping::automatic || !implicit_) {
@@ -263,6 +261,40 @@ std::span<const double> Body::velocity() const {
 
 double Body::kinetic_energy() const {
     return mechanics_ ? mechanics_->kinetic_energy() : rigid_ ? rigid_->kinetic_energy() : 0;
+}
+
+EnergyAccount& EnergyAccount::operator+=(const EnergyAccount& other) {
+    interface += other.interface;
+    loads += other.loads;
+    supports += other.supports;
+    expansion += other.expansion;
+    dissipated += other.dissipated;
+    steps += other.steps;
+    stored += other.stored;
+    return *this;
+}
+
+EnergyAccount Body::energy() const {
+    EnergyAccount out;
+    if (rigid_) {
+        out.stored = rigid_->stored_energy();
+        out.interface = rigid_->interface_work();
+        out.loads = rigid_->load_work();
+    }
+    if (mechanics_) {
+        const Work& work = mechanics_->work();
+        out.stored = mechanics_->stored_energy();
+        out.interface = work.interface;
+        out.loads = work.loads;
+        out.supports = mechanics_->support_work();
+        out.expansion = mechanics_->elasticity().expansion_work();
+        out.steps = work.steps;
+        out.dissipated = work.mass_damping;
+        if (config_.stiffness_damping > 0 || choice_ == 2) {
+            out.dissipated -= out.residual();
+        }
+    }
+    return out;
 }
 
 double Body::strain_energy() const {

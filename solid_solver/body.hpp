@@ -16,6 +16,23 @@
 
 namespace duet::solid {
 
+/// Where a body's mechanical energy comes from and goes, since the start; J/m.
+struct EnergyAccount {
+    double interface = 0;  ///< work of the interface's forces
+    double loads = 0;      ///< of body force, traction, pressure and point loads
+    double supports = 0;   ///< of what moves held nodes as prescribed
+    double expansion = 0;  ///< by expanding while warm: beta (T - T0) d tr(E), heat become work
+    double dissipated = 0; ///< by damping, and by implicit steps
+    double steps = 0;      ///< of explicit steps, see Work
+    double stored = 0;     ///< change of kinetic and strain energy
+    /// What the stored energy has beyond all that came in. With stiffness damping or implicit steps
+    /// the dissipated energy is what is left over, and this is zero.
+    double residual() const {
+        return stored - (interface + loads + supports + expansion + steps - dissipated);
+    }
+    EnergyAccount& operator+=(const EnergyAccount& other);
+};
+
 class Body {
   public:
     /// Throws std::invalid_argument with a sentence if the mesh or a boundary condition is at
@@ -70,6 +87,8 @@ class Body {
     Heat& heat() { return heat_; }
     double kinetic_energy() const; ///< J/m
     double strain_energy() const;  ///< J/m, of a rigid body that of its springs
+
+    EnergyAccount energy() const;
 
     const std::optional<Rigid>& rigid() const { return rigid_; }
     const std::optional<Implicit>& implicit() const { return implicit_; }

@@ -131,7 +131,8 @@ struct BodyConfig {
     Mass mass = Mass::lumped;
     bool thermoelastic_heating = true; ///< (31)
     Stepping stepping = Stepping::explicit_steps;
-    double implicit_step = 0; ///< s, longest implicit step; 0: as long as the advance asked for
+    double implicit_worth = 30; ///< explicit steps that cost as much as an implicit one
+    double implicit_step = 0;   ///< s, longest implicit step; 0: as long as the advance asked for
     Start start = Start::as_given;
     bool insulated = false; ///< no heat passes between the body and the fluid
     std::vector<BoundaryCondition> boundary;

@@ -41,7 +41,6 @@ class Conduction {
     }
 
     std::size_t nodes() const { return first_.size() - 1; }
-    std::size_t pairs() const { return neighbour_.size() / 2; }
 
   private:
     std::vector<std::uint32_t> first_;     ///< [N + 1]

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace duet::solid {
 
@@ -56,9 +57,11 @@ double PlaneTensor::von_mises() const {
 Elasticity::Elasticity(const BodyConfig& body, const Domains& domains)
     : domains_(domains), threads_(body.threads), kinematics_(body.kinematics),
       reference_temperature_(body.reference_temperature), damping_(body.stiffness_damping) {
+    bool expands = false;
     for (const Material& m : body.materials()) {
         law_.emplace_back(m, body);
         heated_ = heated_ || (body.thermoelastic_heating && m.beta() * reference_temperature_ != 0);
+        expands = expands || m.beta() != 0;
     }
     for (const Point& p : body.mesh.node) {
         reference_.push_back(p.x());
@@ -72,6 +75,11 @@ Elasticity::Elasticity(const BodyConfig& body, const Domains& domains)
         out_of_plane_.assign(count, 0.0);
         domain_temperature_.assign(count, reference_temperature_);
         before_.resize(2 * nodes);
+    }
+    if (expands) {
+        trace_.assign(count, 0.0);
+        warming_.assign(count, 0.0);
+        expansion_work_.assign(count, 0.0);
     }
     contribution_.resize(2 * slots * count);
     heat_share_.resize(slots * count);
@@ -87,7 +95,7 @@ void Elasticity::reset(std::span<const double> displacement,
     std::fill(out_of_plane_.begin(), out_of_plane_.end(), 0.0);
     std::fill(domain_temperature_.begin(), domain_temperature_.end(), reference_temperature_);
     forces(displacement, 0, temperature, force);
-    latent_heat(displacement, latent_);
+    settle(displacement);
 }
 
 Gradient Elasticity::gradient(std::size_t k, const double* u) const {
@@ -144,31 +152,57 @@ void Elasticity::forces(std::span<const double> displacement,
         updated_forces(dt, before_.data(), temperature);
     } else {
         std::copy(displacement.begin(), displacement.end(), displacement_.begin());
-        total_forces(dt, temperature);
+        const double per_step = dt > 0 ? damping_ / dt : 0;
+        const bool expands = !trace_.empty();
+        total_forces(
+            temperature, expands, [&](std::size_t k, const Gradient&, const PlaneTensor& s) {
+                const double* old = &stress_[3 * k];
+                return PlaneTensor{per_step * (s.xx - old[0]),
+                                   per_step * (s.yy - old[1]),
+                                   per_step * (s.xy - old[2]),
+                                   0};
+            });
     }
     gather(contribution_, force.data(), 2);
 }
 
-/// P = F (S + b dS/dt).
-void Elasticity::total_forces(double dt, std::span<const double> temperature) {
-    const double per_step = dt > 0 ? damping_ / dt : 0;
+/// P = F (S + b dS/dt); the second part, damping(k, g, S), may read the S before.
+template <class Damping>
+void Elasticity::total_forces(std::span<const double> temperature,
+                              bool book,
+                              const Damping& damping) {
     in_pieces(domains_.size(), threads_, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
             const Gradient g = gradient(k, displacement_.data());
             const auto e = green_strain(g);
-            const PlaneTensor s = law(k).stress(
-                e[0], e[1], e[2], mean(k, temperature.data()) - reference_temperature_);
-            double* old = &stress_[3 * k];
-            put_force(k,
-                      g,
-                      s.xx + per_step * (s.xx - old[0]),
-                      s.yy + per_step * (s.yy - old[1]),
-                      s.xy + per_step * (s.xy - old[2]));
-            old[0] = s.xx;
-            old[1] = s.yy;
-            old[2] = s.xy;
+            const double warming = mean(k, temperature.data()) - reference_temperature_;
+            const PlaneTensor s = law(k).stress(e[0], e[1], e[2], warming);
+            const PlaneTensor d = damping(k, g, s);
+            put_force(k, g, s.xx + d.xx, s.yy + d.yy, s.xy + d.xy);
+            stress_[3 * k] = s.xx;
+            stress_[3 * k + 1] = s.yy;
+            stress_[3 * k + 2] = s.xy;
+            if (book) {
+                book_expansion(k, e[0] + e[1] - trace_[k], warming, domains_.area[k]);
+                trace_[k] = e[0] + e[1];
+            }
         }
     });
+}
+
+/// beta (T - T0) d tr(E), by the trapezoidal rule from one step to the next.
+void Elasticity::book_expansion(std::size_t k, double trace, double warming, double measure) {
+    expansion_work_[k] += 0.5 * (warming_[k] + warming) * law(k).beta * measure * trace;
+    warming_[k] = warming;
+}
+
+void Elasticity::settle(std::span<const double> displacement) {
+    latent_heat(displacement, latent_);
+    std::fill(expansion_work_.begin(), expansion_work_.end(), 0.0);
+}
+
+double Elasticity::expansion_work() const {
+    return std::accumulate(expansion_work_.begin(), expansion_work_.end(), 0.0);
 }
 
 void Elasticity::evaluate(std::span<const double> displacement,
@@ -177,28 +211,25 @@ void Elasticity::evaluate(std::span<const double> displacement,
                           std::span<const double> warming,
                           std::span<double> force) {
     std::copy(displacement.begin(), displacement.end(), displacement_.begin());
-    in_pieces(domains_.size(), threads_, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) {
-            const Gradient g = gradient(k, displacement_.data());
-            const auto e = green_strain(g);
-            const PlaneTensor s = law(k).stress(
-                e[0], e[1], e[2], mean(k, temperature.data()) - reference_temperature_);
-            stress_[3 * k] = s.xx;
-            stress_[3 * k + 1] = s.yy;
-            stress_[3 * k + 2] = s.xy;
-            PlaneTensor rate;
-            if (damping_ > 0) {
-                const auto d = strain_change(g, gradient(k, velocity.data()));
-                rate = law(k).stress(d[0], d[1], d[2], mean(k, warming.data()));
-            }
-            put_force(k,
-                      g,
-                      s.xx + damping_ * rate.xx,
-                      s.yy + damping_ * rate.yy,
-                      s.xy + damping_ * rate.xy);
+    total_forces(temperature, false, [&](std::size_t k, const Gradient& g, const PlaneTensor&) {
+        if (damping_ == 0) {
+            return PlaneTensor{};
         }
+        const auto d = strain_change(g, gradient(k, velocity.data()));
+        const PlaneTensor rate = law(k).stress(d[0], d[1], d[2], mean(k, warming.data()));
+        return PlaneTensor{damping_ * rate.xx, damping_ * rate.yy, damping_ * rate.xy, 0};
     });
     gather(contribution_, force.data(), 2);
+}
+
+void Elasticity::accept(std::span<const double> displacement, std::span<const double> temperature) {
+    latent_heat(displacement, latent_);
+    for (std::size_t k = 0; k < trace_.size(); ++k) {
+        const auto e = green_strain(gradient(k, displacement.data()));
+        const double warming = mean(k, temperature.data()) - reference_temperature_;
+        book_expansion(k, e[0] + e[1] - trace_[k], warming, domains_.area[k]);
+        trace_[k] = e[0] + e[1];
+    }
 }
 
 std::span<const double> Elasticity::heating(std::span<const double> displacement, double dt) {
@@ -375,14 +406,10 @@ std::vector<PlaneTensor> Elasticity::nodal_stress(std::span<const double> temper
     return nodal_mean([&](std::size_t k) { return domain_stress(k, temperature); });
 }
 
-/// E = (g + g^T + g^T g)/2, g = F - I of the smoothed motion.
 std::vector<PlaneTensor> Elasticity::nodal_strain() const {
     return nodal_mean([&](std::size_t k) {
-        const Gradient g = gradient(k, displacement_.data());
-        return PlaneTensor{g.xx + 0.5 * (g.xx * g.xx + g.yx * g.yx),
-                           g.yy + 0.5 * (g.xy * g.xy + g.yy * g.yy),
-                           0.5 * (g.xy + g.yx + g.xx * g.xy + g.yx * g.yy),
-                           0};
+        const auto e = green_strain(gradient(k, displacement_.data()));
+        return PlaneTensor{e[0], e[1], e[2], 0};
     });
 }
 

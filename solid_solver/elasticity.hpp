@@ -57,9 +57,8 @@ class Elasticity {
     /// does not heat itself.
     void latent_heat(std::span<const double> displacement, std::span<double> nodal);
     std::span<const double> latent_heat() const { return latent_; } ///< of the last whole step
-    void accept_latent_heat(std::span<const double> displacement) {
-        latent_heat(displacement, latent_);
-    }
+    /// Ends a whole implicit step: its latent heat, and what its expansion has worked.
+    void accept(std::span<const double> displacement, std::span<const double> temperature);
 
     // Both descriptions.
 
@@ -94,6 +93,11 @@ class Elasticity {
     Linearised linearised(std::size_t domain) const;
 
     double strain_energy() const; ///< J/m, without the thermal part of the stress
+    /// J/m since the last reset or settle: sum over the steps of beta (T - T0) d tr(E),
+    /// what the body has worked against its stiffness and its loads by expanding while warm.
+    double expansion_work() const;
+    /// Forgets what the way to `displacement` would have heated and has worked.
+    void settle(std::span<const double> displacement);
     /// Cauchy stress in domain k.
     PlaneTensor domain_stress(std::size_t domain, std::span<const double> temperature) const;
     /// Area-weighted mean of the domains round each node [N].
@@ -108,6 +112,9 @@ class Elasticity {
         visit(out_of_plane_);
         visit(domain_temperature_);
         visit(latent_);
+        visit(trace_);
+        visit(warming_);
+        visit(expansion_work_);
     }
 
   private:
@@ -118,7 +125,9 @@ class Elasticity {
     double mean(std::size_t domain, const double* nodal) const;
     void put_force(std::size_t domain, const Gradient& g, double sxx, double syy, double sxy);
     void gather(const std::vector<double>& contribution, double* nodal, int components) const;
-    void total_forces(double dt, std::span<const double> temperature);
+    template <class Damping>
+    void total_forces(std::span<const double> temperature, bool book, const Damping& damping);
+    void book_expansion(std::size_t domain, double trace, double warming, double measure);
     void updated_forces(double dt, const double* before, std::span<const double> temperature);
     Shape present_shape(std::size_t domain, const double* displacement) const;
     Shape middle_shape(std::size_t domain, const double* before, const double* after) const;
@@ -141,6 +150,9 @@ class Elasticity {
     std::vector<double> out_of_plane_;
     std::vector<double> domain_temperature_; ///< [K] updated Lagrangian: at the last forces
     std::vector<double> latent_;             ///< [N] J/m, at the last call of heating
+    /// [K], or empty where no warming expands the body: tr(E) (total Lagrangian) and T - T0 of the
+    /// last forces, and the expansion work J/m.
+    std::vector<double> trace_, warming_, expansion_work_;
 
     std::vector<double> before_;       ///< [N][2] work space
     std::vector<double> contribution_; ///< [K][slots][2]

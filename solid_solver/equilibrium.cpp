@@ -77,7 +77,9 @@ class Search {
             if (result_.residual <= tolerance_) {
                 return true;
             }
-            stiffness_.factorise(mechanics_, {});
+            if (!stiffness_.factorise(mechanics_, {})) {
+                return false; // nothing holds it, or it would not stay where it is
+            }
             stiffness_.solve(left, correction_);
             u += correction_;
             ++result_.iterations;

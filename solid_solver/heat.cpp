@@ -51,26 +51,28 @@ Heat::Heat(const BodyConfig& body, const Domains& domains)
 void Heat::apply_boundary(const BodyConfig& body) {
     const std::vector<Edge> boundary = boundary_edges(body.mesh);
     std::vector<double> exchange(temperature_.size(), 0.0);
-    std::map<std::uint32_t, Field> held;
-    for (const BoundaryCondition& condition : body.boundary) {
+    std::map<std::uint32_t, Fixed> held;
+    for (std::size_t c = 0; c < body.boundary.size(); ++c) {
+        const BoundaryCondition& condition = body.boundary[c];
         varies_ = varies_ || !condition.heat_flux.steady()
                   || (condition.temperature && !condition.temperature->steady())
                   || (condition.convection && !condition.convection->temperature.steady());
         for (const Edge& edge : edges_of(condition, body, boundary)) {
             const double half = 0.5 * (place_[edge.b] - place_[edge.a]).norm();
             if (!condition.heat_flux.zero()) {
-                flux_.push_back({edge.a, edge.b, half, condition.heat_flux}); // (29)
+                flux_.push_back({edge.a, edge.b, c, half, condition.heat_flux}); // (29)
             }
             if (condition.convection) { // (26), (30), lumped like the capacity
                 const double coefficient = condition.convection->coefficient * half;
                 surroundings_.push_back(
-                    {edge.a, edge.b, coefficient, condition.convection->temperature});
+                    {edge.a, edge.b, c, coefficient, condition.convection->temperature});
                 exchange[edge.a] += coefficient;
                 exchange[edge.b] += coefficient;
             }
             if (condition.temperature) {
-                held.insert_or_assign(edge.a, *condition.temperature);
-                held.insert_or_assign(edge.b, *condition.temperature);
+                for (const std::uint32_t node : {edge.a, edge.b}) {
+                    held.insert_or_assign(node, Fixed{node, c, *condition.temperature});
+                }
             }
         }
     }
@@ -79,9 +81,10 @@ void Heat::apply_boundary(const BodyConfig& body) {
             exchange_.push_back({i, exchange[i], 0});
         }
     }
-    for (const auto& [node, field] : held) {
-        fixed_.push_back({node, 0, field});
+    for (const auto& [node, fixed] : held) {
+        fixed_.push_back(fixed);
     }
+    ambient_.resize(surroundings_.empty() ? 0 : temperature_.size());
     set_boundary(0, 0);
 }
 
@@ -100,13 +103,14 @@ void Heat::set_boundary(double middle, double end) {
         constant_[edge.b] += b;
         flux_power_ += a + b;
     }
-    std::vector<double> ambient(surroundings_.empty() ? 0 : temperature_.size(), 0.0);
+    middle_ = middle;
+    std::fill(ambient_.begin(), ambient_.end(), 0.0);
     for (const OnEdge& edge : surroundings_) { // lumped, as its coefficient is
-        ambient[edge.a] += edge.half * edge.field(place_[edge.a], middle);
-        ambient[edge.b] += edge.half * edge.field(place_[edge.b], middle);
+        ambient_[edge.a] += edge.half * edge.field(place_[edge.a], middle);
+        ambient_[edge.b] += edge.half * edge.field(place_[edge.b], middle);
     }
     for (Exchange& exchange : exchange_) {
-        exchange.temperature = ambient[exchange.node] / exchange.coefficient;
+        exchange.temperature = ambient_[exchange.node] / exchange.coefficient;
     }
     for (Fixed& fixed : fixed_) {
         fixed.temperature = fixed.field(place_[fixed.node], end);
@@ -171,13 +175,15 @@ void Heat::step(double dt, std::span<const double> thermoelastic) {
     account_.interface += dt * interface_power_;
     account_.walls += dt * flux_power_;
     account_.sources += dt * source_power_;
-    hold();
+    hold(dt);
 }
 
 /// Prescribed temperatures: what must come in there to keep them.
-void Heat::hold() {
-    for (const Fixed& fixed : fixed_) {
-        account_.walls += capacity_[fixed.node] * (fixed.temperature - temperature_[fixed.node]);
+void Heat::hold(double length) {
+    for (Fixed& fixed : fixed_) {
+        const double heat = capacity_[fixed.node] * (fixed.temperature - temperature_[fixed.node]);
+        account_.walls += heat;
+        fixed.power = heat / length;
         temperature_[fixed.node] = fixed.temperature;
     }
 }
@@ -203,12 +209,35 @@ void Heat::book(double length, std::span<const double> temperature) {
     }
 }
 
-void Heat::take(std::span<const double> heat, std::span<const double> thermoelastic) {
+double Heat::power_through(std::size_t condition) const {
+    double power = 0;
+    for (const OnEdge& edge : flux_) {
+        if (edge.condition == condition) {
+            const auto [a, b] = on_nodes(edge, middle_);
+            power += a + b;
+        }
+    }
+    for (const OnEdge& edge : surroundings_) {
+        for (const std::uint32_t node : {edge.a, edge.b}) {
+            if (edge.condition == condition) {
+                power += edge.half * (edge.field(place_[node], middle_) - temperature_[node]);
+            }
+        }
+    }
+    for (const Fixed& fixed : fixed_) {
+        power += fixed.condition == condition ? fixed.power : 0;
+    }
+    return power;
+}
+
+void Heat::take(double length,
+                std::span<const double> heat,
+                std::span<const double> thermoelastic) {
     for (std::size_t i = 0; i < temperature_.size(); ++i) {
         temperature_[i] += (heat[i] + thermoelastic[i]) / capacity_[i];
         account_.thermoelastic += thermoelastic[i];
     }
-    hold();
+    hold(length);
 }
 
 double Heat::stored() const {

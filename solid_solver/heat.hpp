@@ -38,11 +38,14 @@ class Heat {
 
     /// W/m into each node at `temperature` [N]: loads, convection and conduction.
     void flow(std::span<const double> temperature, std::span<double> out) const;
+    /// W/m into the body through the boundary `condition` of its config: flux and convection at
+    /// present, and what kept the prescribed temperature in the last step.
+    double power_through(std::size_t condition) const;
     /// Books `length` seconds of the loads and of convection at `temperature` [N].
     void book(double length, std::span<const double> temperature);
-    /// Puts `heat` [N] J/m, booked before, and `thermoelastic` [N] J/m into the nodes; prescribed
-    /// temperatures take what they need.
-    void take(std::span<const double> heat, std::span<const double> thermoelastic);
+    /// Ends a step of `length`: puts `heat` [N] J/m, booked before, and `thermoelastic` [N] J/m
+    /// into the nodes; prescribed temperatures take what they need.
+    void take(double length, std::span<const double> heat, std::span<const double> thermoelastic);
     const Conduction& conduction() const { return conduction_; }
     /// Calls visit(node, W/(m K)) for each node that exchanges heat by convection.
     template <class Visit>
@@ -82,13 +85,18 @@ class Heat {
         visit(account_.walls);
         visit(account_.sources);
         visit(account_.thermoelastic);
+        for (Fixed& fixed : fixed_) {
+            visit(fixed.power);
+        }
     }
 
   private:
     struct Fixed {
         std::uint32_t node;
-        double temperature;
+        std::size_t condition;
         Field field;
+        double temperature = 0;
+        double power = 0; ///< W/m that kept it in the last step
     };
     struct Exchange { ///< convection, lumped on a node like its capacity
         std::uint32_t node;
@@ -98,6 +106,7 @@ class Heat {
     /// A flux, or the surroundings of a convection, on one boundary edge.
     struct OnEdge {
         std::uint32_t a, b;
+        std::size_t condition;
         double half; ///< m, of its length; times the coefficient for convection
         Field field;
     };
@@ -106,7 +115,7 @@ class Heat {
     void set_boundary(double middle, double end);
     std::array<double, 2> on_nodes(const OnEdge& edge, double time) const;
     void collect_load();
-    void hold();
+    void hold(double length);
     double bound() const;
 
     int threads_;
@@ -120,8 +129,10 @@ class Heat {
     std::vector<Fixed> fixed_;
     std::vector<Exchange> exchange_;
     std::vector<OnEdge> flux_, surroundings_;
-    bool varies_ = false;     ///< some condition changes in time
-    double source_power_ = 0; ///< W/m
+    std::vector<double> ambient_; ///< [N] W/m by the surroundings' temperatures; work space
+    double middle_ = 0;           ///< s, the time of the fluxes and surroundings
+    bool varies_ = false;         ///< some condition changes in time
+    double source_power_ = 0;     ///< W/m
     double flux_power_ = 0;
     double interface_power_ = 0;
     double stable_step_ = 0;

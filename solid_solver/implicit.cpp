@@ -40,7 +40,10 @@ bool Implicit::step(double dt) {
     const double gamma = 2 - std::numbers::sqrt2, w = std::numbers::sqrt2 / 4 * dt;
     dt_ = dt;
     tau_ = 0.5 * gamma * dt;
-    start();
+    if (!start()) {
+        undo();
+        return false;
+    }
     stage_ = gamma;
     from_entropy_ = entropy_ + tau_ * flow_;
     if (mechanics_) {
@@ -76,15 +79,16 @@ bool Implicit::step(double dt) {
     heat_.book(w, span(first));
     heat_.book(tau_, span(t_));
     const Vector thermoelastic = latent_ - stage_latent_;
-    heat_.take(span(received), span(thermoelastic));
+    heat_.take(dt, span(received), span(thermoelastic));
     if (mechanics_) {
-        mechanics_->accept(dt, span(displacement_), span(v_));
+        mechanics_->accept(dt, span(displacement_), span(v_), heat_.temperature());
     }
     return true;
 }
 
 /// State and rates at the start of a step; the factors for its length.
-void Implicit::start() {
+bool Implicit::start() {
+    bool factorised = true;
     heat_factor_.prepare(heat_, tau_);
     temperature_ = t_ = vector(heat_.temperature());
     heat_.flow(heat_.temperature(), span(flow_));
@@ -102,13 +106,14 @@ void Implicit::start() {
                 inverse * force - (inverse > 0 ? mechanics_->mass_damping() * velocity_[c] : 0);
         }
         if (factored_tau_ != tau_) {
-            factorise_anew();
+            factorised = factorise_anew();
         } else if (at_tau_ != factored_tau_ || at_displacement_ != factored_displacement_
                    || at_temperature_ != factored_temperature_) {
-            factorise_as_kept();
+            factorised = factorise_as_kept();
         }
     }
     entropy_ = vector(heat_.capacity()).cwiseProduct(temperature_) + latent_;
+    return factorised;
 }
 
 bool Implicit::solve_stage() {
@@ -153,7 +158,9 @@ bool Implicit::solve_motion() {
         fresh = solves > many_solves && !fresh;
         if (fresh) { // the factor has become too unlike the tangent
             imbalance();
-            factorise_anew();
+            if (!factorise_anew()) {
+                return false;
+            }
         }
     }
     return false;
@@ -241,16 +248,16 @@ void Implicit::apply(const Vector& x, Vector& image) {
 }
 
 /// Factorises the tangent at the motion of the last evaluate.
-void Implicit::factorise_anew() {
+bool Implicit::factorise_anew() {
     const auto u = mechanics_->displacement();
     factored_displacement_.assign(u.begin(), u.end());
     factored_temperature_.assign(t_.begin(), t_.end());
     factored_tau_ = tau_;
-    factorise_as_kept();
+    return factorise_as_kept();
 }
 
 /// Makes the factor that belongs to the state, and leaves the mechanics as they were.
-void Implicit::factorise_as_kept() {
+bool Implicit::factorise_as_kept() {
     const Vector u = vector(mechanics_->displacement());
     const Vector rest = Vector::Zero(u.size()), none = Vector::Zero(t_.size());
     mechanics_->evaluate(factored_displacement_, span(rest), factored_temperature_, span(none));
@@ -258,12 +265,13 @@ void Implicit::factorise_as_kept() {
     parts.mass = (1 / factored_tau_ + mechanics_->mass_damping()) / factored_tau_;
     parts.material = 1 + mechanics_->stiffness_damping() / factored_tau_;
     parts.adiabatic = 1;
-    stiffness_->factorise(*mechanics_, parts);
+    const bool factorised = stiffness_->factorise(*mechanics_, parts);
     ++factorisations_;
     mechanics_->evaluate(span(u), span(rest), span(t_), span(none));
     at_displacement_ = factored_displacement_;
     at_temperature_ = factored_temperature_;
-    at_tau_ = factored_tau_;
+    at_tau_ = factored_tau_ = factorised ? factored_tau_ : 0;
+    return factorised;
 }
 
 void Implicit::undo() {

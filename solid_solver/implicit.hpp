@@ -29,8 +29,8 @@ class Implicit {
     /// `mechanics` may be null: heat alone. Both must outlive this.
     Implicit(Heat& heat, Mechanics* mechanics);
 
-    /// One step of length dt. False if Newton's method does not converge; the state is then that
-    /// before the step.
+    /// One step of length dt. False if Newton's method does not converge, or the tangent is not
+    /// that of a stable body; the state is then that before the step.
     bool step(double dt);
 
     std::uint64_t factorisations() const { return factorisations_; } ///< of the stiffness
@@ -48,15 +48,15 @@ class Implicit {
   private:
     using Vector = Eigen::VectorXd;
 
-    void start();
+    bool start();
     bool solve_stage();
     void solve_temperature();
     bool solve_motion();
     double imbalance();
     int correct(double reduction);
     void apply(const Vector& x, Vector& image);
-    void factorise_anew();
-    void factorise_as_kept();
+    bool factorise_anew();
+    bool factorise_as_kept();
     void undo();
 
     Heat& heat_;

@@ -1,29 +1,19 @@
 #include "solid_solver/loads.hpp"
 
+#include "solid_solver/locator.hpp"
+
 #include <algorithm>
 #include <stdexcept>
 
 namespace duet::solid {
-
-namespace {
-
-/// The node nearest to a place.
-std::uint32_t nearest_node(const Mesh& mesh, const Point& place) {
-    const auto nearer = [&](const Point& a, const Point& b) {
-        return (a - place).squaredNorm() < (b - place).squaredNorm();
-    };
-    return static_cast<std::uint32_t>(std::min_element(mesh.node.begin(), mesh.node.end(), nearer)
-                                      - mesh.node.begin());
-}
-
-} // namespace
 
 Loads::Loads(const BodyConfig& body, std::span<const double> mass) : place_(body.mesh.node) {
     for (const double m : mass) {
         body_force_.insert(body_force_.end(), {m * body.body_force.x(), m * body.body_force.y()});
     }
     const std::vector<Edge> boundary = boundary_edges(body.mesh);
-    for (const BoundaryCondition& condition : body.boundary) {
+    for (std::size_t index = 0; index < body.boundary.size(); ++index) {
+        const BoundaryCondition& condition = body.boundary[index];
         const std::array<const std::optional<Field>*, 2> displacement{&condition.displacement_x,
                                                                       &condition.displacement_y};
         const std::array<const std::optional<Field>*, 2> velocity{&condition.velocity_x,
@@ -46,11 +36,11 @@ Loads::Loads(const BodyConfig& body, std::span<const double> mass) : place_(body
                 for (int d = 0; d < 2; ++d) {
                     const auto k = static_cast<std::size_t>(d);
                     if (*displacement[k]) {
-                        hold(i, d, **displacement[k], false);
+                        hold(i, d, **displacement[k], false, index);
                     } else if (*velocity[k]) {
-                        hold(i, d, **velocity[k], true);
+                        hold(i, d, **velocity[k], true, index);
                     } else if (fixed[k]) {
-                        hold(i, d, 0, false);
+                        hold(i, d, 0, false, index);
                     }
                 }
             }
@@ -62,16 +52,17 @@ Loads::Loads(const BodyConfig& body, std::span<const double> mass) : place_(body
     }
 }
 
-void Loads::hold(std::uint32_t node, int direction, const Field& value, bool velocity) {
+void Loads::hold(
+    std::uint32_t node, int direction, const Field& value, bool velocity, std::size_t condition) {
     const std::uint32_t component = 2 * node + static_cast<std::uint32_t>(direction);
     const auto at =
         std::lower_bound(held_.begin(), held_.end(), component, [](const Held& h, std::uint32_t c) {
             return h.component < c;
         });
     if (at != held_.end() && at->component == component) {
-        *at = {component, place_[node], value, velocity}; // the later condition rules
+        *at = {component, place_[node], value, velocity, condition}; // the later condition rules
     } else {
-        held_.insert(at, {component, place_[node], value, velocity});
+        held_.insert(at, {component, place_[node], value, velocity, condition});
     }
     moves_ = moves_ || (velocity ? !value.zero() : !value.steady());
 }

@@ -29,6 +29,7 @@ class Loads {
         Point place;             ///< m, reference
         Field value;             ///< m, or m/s for a velocity
         bool velocity;
+        std::size_t condition; ///< index of the boundary condition; the last one that holds it
     };
     std::span<const Held> held() const { return held_; }
     /// Some held component moves.
@@ -47,7 +48,11 @@ class Loads {
         VectorField force;
     };
 
-    void hold(std::uint32_t node, int direction, const Field& value, bool velocity);
+    void hold(std::uint32_t node,
+              int direction,
+              const Field& value,
+              bool velocity,
+              std::size_t condition);
 
     std::vector<Point> place_;       ///< [N] m, reference
     std::vector<double> body_force_; ///< [N][2] N/m

@@ -25,4 +25,12 @@ std::optional<Interpolation> interpolation_at(const Mesh& mesh, const Point& poi
     return best;
 }
 
+std::uint32_t nearest_node(const Mesh& mesh, const Point& place) {
+    const auto nearer = [&](const Point& a, const Point& b) {
+        return (a - place).squaredNorm() < (b - place).squaredNorm();
+    };
+    return static_cast<std::uint32_t>(std::min_element(mesh.node.begin(), mesh.node.end(), nearer)
+                                      - mesh.node.begin());
+}
+
 } // namespace duet::solid

@@ -19,4 +19,7 @@ struct Interpolation {
 /// boundary, but for rounding, is inside. Looks at every triangle: meant to be done once a point.
 std::optional<Interpolation> interpolation_at(const Mesh& mesh, const Point& point);
 
+/// The node nearest to a place; of equals the first.
+std::uint32_t nearest_node(const Mesh& mesh, const Point& place);
+
 } // namespace duet::solid

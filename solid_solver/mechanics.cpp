@@ -58,6 +58,7 @@ void Mechanics::set_motion(std::span<const double> displacement,
     loads_.forces(time_, position_, external_);
     // No rate yet: the damping sets in with the first step.
     elasticity_.reset(displacement_, temperature, internal_);
+    start_books();
 }
 
 void Mechanics::place() {
@@ -129,7 +130,8 @@ void Mechanics::relax(double dt, std::span<const double> temperature) {
 void Mechanics::settle() {
     std::fill(velocity_.begin(), velocity_.end(), 0.0);
     hold_velocities();
-    elasticity_.accept_latent_heat(displacement_);
+    elasticity_.settle(displacement_);
+    start_books();
 }
 
 std::vector<double> Mechanics::reaction() const {
@@ -142,29 +144,78 @@ std::vector<double> Mechanics::reaction() const {
     return force;
 }
 
-void Mechanics::kick(double half_step) {
-    if (correction_) {
-        for (std::size_t c = 0; c < velocity_.size(); ++c) {
-            acceleration_[c] = inverse_mass_[c] * (external_[c] + interface_[c] + internal_[c]);
+Point Mechanics::reaction_on(std::size_t condition) const {
+    Point sum = Point::Zero();
+    for (const Loads::Held& held : loads_.held()) {
+        if (held.condition == condition) {
+            sum[static_cast<Eigen::Index>(held.component % 2)] -=
+                load(held.component) + internal_[held.component];
         }
+    }
+    return sum;
+}
+
+/// v += half_step M^-1 f. Returns sum f^2/m.
+double Mechanics::kick(double half_step) {
+    double squares = 0;
+    for (std::size_t c = 0; c < velocity_.size(); ++c) {
+        const double force = load(c) + internal_[c];
+        const double acceleration = inverse_mass_[c] * force;
+        squares += force * acceleration;
+        if (correction_) {
+            acceleration_[c] = acceleration;
+        } else {
+            velocity_[c] += half_step * acceleration;
+        }
+    }
+    if (correction_) {
         correction_->apply(acceleration_, inverse_mass_, corrected_, threads_);
         for (std::size_t c = 0; c < velocity_.size(); ++c) {
             velocity_[c] += half_step * corrected_[c];
         }
-        return;
     }
+    return squares;
+}
+
+/// Work of the present forces along half a step's way.
+void Mechanics::book(double half_step) {
+    double stress = 0, loads = 0;
     for (std::size_t c = 0; c < velocity_.size(); ++c) {
-        velocity_[c] +=
-            half_step * inverse_mass_[c] * (external_[c] + interface_[c] + internal_[c]);
+        stress += internal_[c] * velocity_[c];
+        loads += external_[c] * velocity_[c];
     }
+    work_.stress += half_step * stress;
+    work_.loads += half_step * loads;
+    if (loads_.moves()) {
+        for (const Loads::Held& held : loads_.held()) {
+            const std::uint32_t c = held.component;
+            work_.held += half_step * (load(c) + internal_[c]) * velocity_[c];
+        }
+    }
+}
+
+void Mechanics::start_books() {
+    work_ = {};
+    held_energy_ = held_energy();
+    start_energy_ = kinetic_energy() + strain_energy();
+}
+
+double Mechanics::held_energy() const {
+    double energy = 0;
+    for (const Loads::Held& held : loads_.held()) {
+        const std::uint32_t c = held.component;
+        energy += 0.5 * mass_[c / 2] * velocity_[c] * velocity_[c];
+    }
+    return energy;
 }
 
 // Mass-proportional damping -a M v is centred in the step: v at its start before the first half
 // kick, v at its end after the second.
 void Mechanics::drift(double dt) {
     slow_down(1 - 0.5 * mass_damping_ * dt);
-    kick(0.5 * dt);
+    work_.steps -= dt * dt / 8 * kick(0.5 * dt);
     hold_course(dt);
+    book(0.5 * dt);
     for (std::size_t c = 0; c < displacement_.size(); ++c) {
         displacement_[c] += dt * velocity_[c];
     }
@@ -172,8 +223,7 @@ void Mechanics::drift(double dt) {
     time_ += dt;
     last_step_ = dt;
     for (const std::uint32_t c : loaded_) {
-        work_ += interface_[c] * dt * velocity_[c];
-        impulse_[c % 2] += interface_[c] * dt;
+        work_.interface += interface_[c] * dt * velocity_[c];
     }
 }
 
@@ -182,7 +232,8 @@ void Mechanics::respond(double dt, std::span<const double> temperature) {
         loads_.forces(time_, position_, external_);
     }
     elasticity_.forces(displacement_, dt, temperature, internal_);
-    kick(0.5 * dt);
+    book(0.5 * dt);
+    work_.steps += dt * dt / 8 * kick(0.5 * dt);
     slow_down(1 / (1 + 0.5 * mass_damping_ * dt));
     if (loads_.moves()) {
         hold_velocities();
@@ -191,8 +242,9 @@ void Mechanics::respond(double dt, std::span<const double> temperature) {
 
 void Mechanics::slow_down(double factor) {
     if (mass_damping_ > 0) {
-        for (double& v : velocity_) {
-            v *= factor;
+        work_.mass_damping += (1 - factor * factor) * (kinetic_energy() - held_energy());
+        for (std::size_t c = 0; c < velocity_.size(); ++c) {
+            velocity_[c] *= inverse_mass_[c] > 0 ? factor : 1;
         }
     }
 }
@@ -223,15 +275,22 @@ Spectrum::Operator Mechanics::adiabatic_tangent() {
 
 void Mechanics::accept(double dt,
                        std::span<const double> before,
-                       std::span<const double> velocity) {
+                       std::span<const double> velocity,
+                       std::span<const double> temperature) {
     time_ += dt;
     last_step_ = dt;
     for (const std::uint32_t c : loaded_) {
-        work_ += interface_[c] * (displacement_[c] - before[c]);
-        impulse_[c % 2] += interface_[c] * dt;
+        work_.interface += interface_[c] * (displacement_[c] - before[c]);
+    }
+    for (std::size_t c = 0; c < displacement_.size(); ++c) {
+        const double way = displacement_[c] - before[c];
+        work_.loads += external_[c] * way;
+        // The mean of the squares at both ends: of second order, as the step is.
+        work_.mass_damping += 0.5 * dt * mass_damping_ * mass_[c / 2]
+                              * (velocity_[c] * velocity_[c] + velocity[c] * velocity[c]);
     }
     std::copy(velocity.begin(), velocity.end(), velocity_.begin());
-    elasticity_.accept_latent_heat(displacement_);
+    elasticity_.accept(displacement_, temperature);
     place();
     look_ahead(0);
 }

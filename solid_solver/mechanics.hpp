@@ -7,12 +7,38 @@
 #include "solid_solver/mass_correction.hpp"
 #include "solid_solver/spectrum.hpp"
 
-#include <array>
 #include <optional>
 #include <span>
 #include <vector>
 
 namespace duet::solid {
+
+/// Work on a body since the start, by its way; J/m. Explicit steps: each force at the start of a
+/// step and at its end, against half the step's way. Then the change of the kinetic energy is
+///
+///     interface + loads + supports + stress - mass_damping + steps
+///
+/// to rounding, with a lumped mass: v' = v + h a/2, x += h v', v = v' + h a'/2 give
+/// m (v^2 - v0^2)/2 = (f0 + f) (x - x0)/2 + h^2/8 (f^2 - f0^2)/m, whose last part is that of the
+/// steps: it stays bounded, and is of second order.
+struct Work {
+    double interface = 0;
+    double loads = 0;  ///< body force, traction, pressure, point loads
+    double held = 0;   ///< of all forces on held nodes along their way; their supports' is minus it
+    double stress = 0; ///< explicit steps: of the body's own stress, damping included
+    double mass_damping = 0; ///< lost
+    double steps = 0;
+
+    template <class Visit>
+    void visit_state(const Visit& visit) {
+        visit(interface);
+        visit(loads);
+        visit(held);
+        visit(stress);
+        visit(mass_damping);
+        visit(steps);
+    }
+};
 
 class Mechanics {
   public:
@@ -48,17 +74,20 @@ class Mechanics {
     double stable_step() const;
     /// Takes up the present deformation into the largest frequency (a few rounds only).
     void update_frequency();
-    double largest_frequency() const { return frequency_; } ///< rad/s
 
     std::span<const double> position() const { return position_; } ///< [N][2] m
     std::span<const double> velocity() const { return velocity_; } ///< [N][2] m/s
     std::span<const double> mass() const { return mass_; }         ///< [N] kg/m
     /// [N][2] N/m, -(f_int + f_damp): what the body's own stress does to its nodes.
     std::span<const double> internal_force() const { return internal_; }
-    std::array<double, 2> interface_impulse() const { return impulse_; } ///< N s/m since the start
-    double interface_work() const { return work_; }                      ///< J/m since the start
     double kinetic_energy() const;                                       ///< J/m
     double strain_energy() const { return elasticity_.strain_energy(); } ///< J/m
+    /// J/m, kinetic and strain, since the start.
+    double stored_energy() const { return kinetic_energy() + strain_energy() - start_energy_; }
+    const Work& work() const { return work_; }
+    /// J/m that what holds the held nodes has done on them: against the forces there, and to move
+    /// their mass.
+    double support_work() const { return held_energy() - held_energy_ - work_.held; }
     PlaneTensor domain_stress(std::size_t domain, std::span<const double> temperature) const {
         return elasticity_.domain_stress(domain, temperature);
     }
@@ -82,9 +111,9 @@ class Mechanics {
         visit(external_);
         visit(time_);
         visit(last_step_);
-        visit(impulse_[0]);
-        visit(impulse_[1]);
-        visit(work_);
+        work_.visit_state(visit);
+        visit(held_energy_);
+        visit(start_energy_);
         visit(frequency_);
         visit(spectrum_.mode());
     }
@@ -102,7 +131,10 @@ class Mechanics {
     /// Some held component moves: a displacement that changes in time, or a velocity.
     bool driven() const { return loads_.moves(); }
     /// Ends an implicit step of length dt at the motion of the last evaluate, with `velocity`.
-    void accept(double dt, std::span<const double> before, std::span<const double> velocity);
+    void accept(double dt,
+                std::span<const double> before,
+                std::span<const double> velocity,
+                std::span<const double> temperature);
     double mass_damping() const { return mass_damping_; } ///< 1/s
     double stiffness_damping() const { return damping_; } ///< s
 
@@ -112,6 +144,8 @@ class Mechanics {
     std::span<const double> displacement() const { return displacement_; } ///< [N][2] m
     /// [N][2] N/m: what holds the held components against loads and stress, zero elsewhere.
     std::vector<double> reaction() const;
+    /// The sum of these over the nodes that the boundary `condition` of the config holds, N/m.
+    Point reaction_on(std::size_t condition) const;
     /// [N][2] N/m: body force, traction and interface.
     double load(std::size_t component) const {
         return external_[component] + interface_[component];
@@ -121,7 +155,10 @@ class Mechanics {
     Spectrum::Operator adiabatic_tangent();
     void hold_velocities();
     void hold_course(double dt);
-    void kick(double half_step);
+    double kick(double half_step);
+    void book(double half_step);
+    double held_energy() const;
+    void start_books();
     void slow_down(double factor);
     void place(); ///< positions from the displacement
 
@@ -140,11 +177,12 @@ class Mechanics {
     /// differences of positions.
     std::vector<double> displacement_, position_, velocity_;
     std::vector<double> internal_; ///< [N][2] N/m, -(f_int + f_damp) at the last positions
-    std::array<double, 2> impulse_{};
-    double work_ = 0;
-    double time_ = 0;      ///< s since the start
-    double last_step_ = 0; ///< s
-    double ahead_ = 0;     ///< s, within an implicit step
+    Work work_;
+    double held_energy_ = 0;  ///< J/m, kinetic, of the held nodes at the start
+    double start_energy_ = 0; ///< J/m, kinetic and strain
+    double time_ = 0;         ///< s since the start
+    double last_step_ = 0;    ///< s
+    double ahead_ = 0;        ///< s, within an implicit step
     double frequency_ = 0;
     std::optional<MassCorrection> correction_;
     std::vector<double> acceleration_, corrected_; ///< [N][2] work space of the correction

@@ -66,6 +66,7 @@ Rigid::Rigid(const BodyConfig& body) {
     }
     drift_ = (inverse_mass_.head<2>().array() > 0).select(drift_, 0.0);
     spin_ = support.fixed_angle ? 0 : spin / lumped;
+    start_energy_ = kinetic_energy();
     place();
     collect_loads();
 }
@@ -90,14 +91,23 @@ void Rigid::collect_loads() {
     load_ = net(external_);
 }
 
-/// With (R r) x f = cos(angle) r x f - sin(angle) r . f.
+/// Force and torque, with (R r) x f = cos(angle) r x f - sin(angle) r . f.
+Eigen::Vector3d Rigid::resultant(const Net& net) const {
+    return {
+        net.force.x(), net.force.y(), std::cos(angle_) * net.across - std::sin(angle_) * net.along};
+}
+
 Eigen::Vector3d Rigid::acceleration() const {
-    const Point force = interface_.force + load_.force;
-    const double torque = std::cos(angle_) * (interface_.across + load_.across)
-                          - std::sin(angle_) * (interface_.along + load_.along);
-    const Eigen::Vector3d all(force.x(), force.y(), torque);
     const Eigen::Vector3d way(displacement_.x(), displacement_.y(), angle_);
-    return inverse_mass_.cwiseProduct(all - spring_.cwiseProduct(way));
+    return inverse_mass_.cwiseProduct(resultant(interface_) + resultant(load_)
+                                      - spring_.cwiseProduct(way));
+}
+
+/// Work of the present forces along half a step's way.
+void Rigid::book(double half_step) {
+    const Eigen::Vector3d way = half_step * Eigen::Vector3d(drift_.x(), drift_.y(), spin_);
+    load_work_ += resultant(load_).dot(way);
+    interface_work_ += resultant(interface_).dot(way);
 }
 
 /// rad/s: the frequency of its springs or of a swing in its forces, or the spin itself.
@@ -117,6 +127,7 @@ void Rigid::advance(double length) {
         const Eigen::Vector3d before = acceleration();
         drift_ += 0.5 * dt * before.head<2>();
         spin_ += 0.5 * dt * before.z();
+        book(0.5 * dt);
         displacement_ += dt * drift_;
         angle_ += dt * spin_;
         time_ += dt;
@@ -124,6 +135,7 @@ void Rigid::advance(double length) {
             place();
             collect_loads();
         }
+        book(0.5 * dt);
         const Eigen::Vector3d after = acceleration();
         drift_ += 0.5 * dt * after.head<2>();
         spin_ += 0.5 * dt * after.z();

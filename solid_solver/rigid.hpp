@@ -37,6 +37,9 @@ class Rigid {
     const Eigen::Vector3d& inverse_mass() const { return inverse_mass_; }
     double kinetic_energy() const; ///< J/m
     double spring_energy() const;  ///< J/m
+    double stored_energy() const { return kinetic_energy() + spring_energy() - start_energy_; }
+    double load_work() const { return load_work_; }           ///< J/m since the start, of its loads
+    double interface_work() const { return interface_work_; } ///< likewise
 
     template <class Visit>
     void visit_state(const Visit& visit) {
@@ -47,6 +50,9 @@ class Rigid {
         visit(drift_.y());
         visit(spin_);
         visit(time_);
+        visit(start_energy_);
+        visit(load_work_);
+        visit(interface_work_);
         visit(load_.force.x());
         visit(load_.force.y());
         visit(load_.across);
@@ -63,6 +69,8 @@ class Rigid {
         double across = 0, along = 0;
     };
     Net net(std::span<const double> nodal) const;
+    Eigen::Vector3d resultant(const Net& net) const;
+    void book(double half_step);
     void collect_loads();
     Eigen::Vector3d acceleration() const;
     double fastest() const;
@@ -78,6 +86,7 @@ class Rigid {
 
     Point displacement_ = Point::Zero(), drift_ = Point::Zero(); ///< m, m/s, of the centre
     double angle_ = 0, spin_ = 0, time_ = 0;
+    double start_energy_ = 0, load_work_ = 0, interface_work_ = 0; ///< J/m
     std::vector<double> position_, velocity_;
 };
 

@@ -137,6 +137,7 @@ void Participant::fill(protocol::InterfaceMotion& motion) const {
 void Participant::fill(v1::Ledger& ledger) const {
     double mass = 0, heat = 0, walls = 0, sources = 0, thermoelastic = 0;
     double kinetic = 0, strain = 0;
+    EnergyAccount energy;
     for (const Body& body : solid_->bodies()) {
         const HeatAccount& account = body.heat().account();
         mass += body.mass();
@@ -146,6 +147,7 @@ void Participant::fill(v1::Ledger& ledger) const {
         thermoelastic += account.thermoelastic;
         kinetic += body.kinetic_energy();
         strain += body.strain_energy();
+        energy += body.energy();
     }
     const InterfaceAccount& passed = solid_->account();
     ledger.set_mass(mass);
@@ -160,7 +162,14 @@ void Participant::fill(v1::Ledger& ledger) const {
     ledger.set_strain_energy(strain);
     ledger.set_exchanged_heat(passed.exchanged_heat);
     ledger.set_exchanged_impulse(passed.exchanged_impulse);
-    (*ledger.mutable_figure())["thermoelastic_heat"] = thermoelastic;
+    auto& figure = *ledger.mutable_figure();
+    figure["thermoelastic_heat"] = thermoelastic;
+    figure["work_of_loads"] = energy.loads;
+    figure["work_of_supports"] = energy.supports;
+    figure["work_of_expansion"] = energy.expansion;
+    figure["dissipated"] = energy.dissipated;
+    figure["energy_of_steps"] = energy.steps;
+    figure["energy_residual"] = energy.residual();
 }
 
 namespace {
@@ -213,7 +222,8 @@ void Participant::write_snapshot() {
     const bool moving = std::any_of(bodies.begin(), bodies.end(), [](const Body& b) {
         return b.config().motion != Motion::fixed;
     });
-    std::vector<double> position, velocity, displacement, temperature, von_mises;
+    std::vector<double> position, velocity, displacement, temperature;
+    std::vector<double> xx, yy, xy, zz, von_mises;
     std::vector<std::uint32_t> connectivity;
     for (const Body& body : bodies) {
         const auto before = static_cast<std::uint32_t>(temperature.size());
@@ -238,6 +248,10 @@ void Participant::write_snapshot() {
             stress = body.mechanics()->nodal_stress(t);
         }
         for (const PlaneTensor& s : stress) {
+            xx.push_back(s.xx);
+            yy.push_back(s.yy);
+            xy.push_back(s.xy);
+            zz.push_back(s.zz);
             von_mises.push_back(s.von_mises());
         }
     }
@@ -249,6 +263,10 @@ void Participant::write_snapshot() {
     if (moving) {
         frame.fields.push_back({"displacement", 2, displacement});
         frame.fields.push_back({"velocity", 2, velocity});
+        frame.fields.push_back({"stress_xx", 1, xx});
+        frame.fields.push_back({"stress_yy", 1, yy});
+        frame.fields.push_back({"stress_xy", 1, xy});
+        frame.fields.push_back({"stress_zz", 1, zz});
         frame.fields.push_back({"von_mises", 1, von_mises});
     }
     series_->append(frame);

@@ -129,10 +129,57 @@ constexpr Integral integrals[] = {
     {"kinetic_energy", Join::sum, [](const Body& b) { return b.kinetic_energy(); }},
     {"strain_energy", Join::sum, [](const Body& b) { return b.strain_energy(); }},
     {"angle", Join::sum, [](const Body& b) { return b.rigid() ? b.rigid()->angle() : 0.0; }},
+    {"work_of_interface", Join::sum, [](const Body& b) { return b.energy().interface; }},
+    {"work_of_loads", Join::sum, [](const Body& b) { return b.energy().loads; }},
+    {"work_of_supports", Join::sum, [](const Body& b) { return b.energy().supports; }},
+    {"work_of_expansion", Join::sum, [](const Body& b) { return b.energy().expansion; }},
+    {"dissipated", Join::sum, [](const Body& b) { return b.energy().dissipated; }},
+    {"energy_residual", Join::sum, [](const Body& b) { return b.energy().residual(); }},
     {"reaction_x", Join::sum, [](const Body& b) { return reaction(b, 0); }},
     {"reaction_y", Join::sum, [](const Body& b) { return reaction(b, 1); }},
     {"area", Join::sum, [](const Body& b) { return b.area(); }},
 };
+
+/// Over a named boundary of a body.
+struct BoundaryQuantity {
+    const char* name;
+    double (*value)(const Body&, std::size_t condition);
+};
+
+constexpr BoundaryQuantity boundary_quantities[] = {
+    {"reaction_x",
+     [](const Body& b, std::size_t c) {
+         return b.mechanics() ? b.mechanics()->reaction_on(c).x() : 0.0;
+     }},
+    {"reaction_y",
+     [](const Body& b, std::size_t c) {
+         return b.mechanics() ? b.mechanics()->reaction_on(c).y() : 0.0;
+     }},
+    {"heat_flow", [](const Body& b, std::size_t c) { return b.heat().power_through(c); }},
+};
+
+/// The conditions of that name, of all bodies that the probe may mean.
+double over_boundary(const BoundaryQuantity& quantity,
+                     const v1::Probe& probe,
+                     const Solid& solid,
+                     const std::vector<std::size_t>& bodies) {
+    double sum = 0;
+    bool found = false;
+    for (const std::size_t b : bodies) {
+        const std::vector<BoundaryCondition>& conditions = solid.bodies()[b].config().boundary;
+        for (std::size_t c = 0; c < conditions.size(); ++c) {
+            if (conditions[c].name == probe.boundary()) {
+                sum += quantity.value(solid.bodies()[b], c);
+                found = true;
+            }
+        }
+    }
+    if (!found) {
+        throw std::invalid_argument("Probe \"" + probe.name() + "\" names the boundary \""
+                                    + probe.boundary() + "\", which no body has.");
+    }
+    return sum;
+}
 
 template <class Table>
 const auto& known(const Table& table, const v1::Probe& probe, const std::string& kind) {
@@ -203,6 +250,12 @@ Probes::Probes(const v1::Scene& scene, const Solid& solid) {
             continue;
         }
         Prepared prepared{probe, {}, bodies_of(probe, solid)};
+        if (!probe.boundary().empty()) {
+            over_boundary(
+                known(boundary_quantities, probe, "on a boundary"), probe, solid, prepared.bodies);
+            prepared_.push_back(std::move(prepared));
+            continue;
+        }
         if (!protocol::is_field_probe(probe)) {
             known(integrals, probe, "over a body");
             prepared_.push_back(std::move(prepared));
@@ -240,6 +293,12 @@ void Probes::take(const Solid& solid,
     std::vector<Nodal> tensors(solid.bodies().size()); // made when the first probe asks for it
     for (const Prepared& prepared : prepared_) {
         const v1::Probe& probe = prepared.probe;
+        if (!probe.boundary().empty()) {
+            const BoundaryQuantity& quantity = known(boundary_quantities, probe, "on a boundary");
+            *samples.Add() = protocol::integral_sample(
+                probe, time, over_boundary(quantity, probe, solid, prepared.bodies));
+            continue;
+        }
         if (prepared.points.empty()) {
             const Integral& integral = known(integrals, probe, "over a body");
             *samples.Add() =

@@ -1,6 +1,7 @@
 #include "solid_solver/solid_scene.hpp"
 
 #include "protocol/function.hpp"
+#include "protocol/implicit_worth.hpp"
 #include "solid_solver/mesh_file.hpp"
 #include "solid_solver/shapes.hpp"
 
@@ -174,6 +175,7 @@ config_from_scene(const v1::Body& body, unsigned threads, const std::filesystem:
     config.stepping = body.stepping() == v1::Body::IMPLICIT    ? Stepping::implicit_steps
                       : body.stepping() == v1::Body::AUTOMATIC ? Stepping::automatic
                                                                : Stepping::explicit_steps;
+    config.implicit_worth = protocol::implicit_worth(body);
     config.implicit_step = body.implicit_step();
     config.start = body.start() == v1::Body::EQUILIBRIUM ? Start::equilibrium : Start::as_given;
     config.insulated = body.insulated();

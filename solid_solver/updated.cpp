@@ -112,6 +112,9 @@ void Elasticity::updated_forces(double dt,
             const double pxx = weight * (stress[0] + per_step * added.xx);
             const double pyy = weight * (stress[1] + per_step * added.yy);
             const double pxy = weight * (stress[2] + per_step * added.xy);
+            if (!warming_.empty()) {
+                book_expansion(k, l.xx + l.yy, now - reference_temperature_, weight);
+            }
             double* out = &contribution_[2 * slots * k];
             for (std::size_t i = 0; i < slots; ++i) {
                 out[2 * i] = -(pxx * shape.x[i] + pxy * shape.y[i]);

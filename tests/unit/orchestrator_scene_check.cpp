@@ -167,6 +167,7 @@ TEST(SceneCheck, ProbeNamesAndPlaces) {
     expect_fault("fluid.wall=[{ name = 'w', around = 'core' }]", "there is no hole 'core'");
     expect_fault("fluid.wall=[{ name = 'w' }]", "needs either 'along', two points, or 'around'");
     expect_fault("probe[0].wall=\"lit\"", "there is no wall 'lit'; did you mean 'lid'?");
+    expect_fault("probe[0].boundary=\"foot\"", "a probe of the fluid takes a wall");
     expect_fault("probe[0].body=\"plate\"", "a probe of the fluid takes a wall");
     expect_fault("probe[0].name=\"a,b\"", "must be a word");
     EXPECT_NE(problems(good + "[[probe]]\nname = 'p'\nof = 'fluid'\nquantity = 'q'\n")

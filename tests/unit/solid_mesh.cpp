@@ -85,17 +85,28 @@ TEST(SolidMesh, EachFaultIsNamed) {
     EXPECT_NE(refusal({}).find("no triangles"), std::string::npos);
 }
 
+/// Two meshes in one, without a common node.
+std::string both(Mesh mesh, const Mesh& other) {
+    const auto first = static_cast<std::uint32_t>(mesh.node.size());
+    mesh.node.insert(mesh.node.end(), other.node.begin(), other.node.end());
+    for (const Triangle& t : other.triangle) {
+        mesh.triangle.push_back({t[0] + first, t[1] + first, t[2] + first});
+    }
+    return refusal(mesh);
+}
+
+TEST(SolidMesh, PiecesThatTouchWithoutCommonNodesAreRefused) {
+    // As a mesh file has them whose surfaces were not joined: the boundary that the fluid sees
+    // would be cut in two at the seam.
+    const Mesh unit = rectangle_mesh({0, 0}, 1, 1, 0.5);
+    EXPECT_NE(both(unit, rectangle_mesh({1, 0}, 1, 1, 0.5)).find("merge them"), std::string::npos);
+    EXPECT_NE(both(unit, rectangle_mesh({1, 0.2}, 1, 0.2, 0.2)).find("hangs"), std::string::npos);
+    EXPECT_NE(both(rectangle_mesh({1, 0.2}, 1, 0.2, 0.2), unit).find("hangs"), std::string::npos);
+}
+
 TEST(SolidMesh, PiecesThatOverlapAreRefused) {
-    // Two squares without a common node: side by side, across each other, one within the other,
-    // and one with a corner on the other's diagonal.
-    const auto both = [](Mesh mesh, const Mesh& other) {
-        const auto first = static_cast<std::uint32_t>(mesh.node.size());
-        mesh.node.insert(mesh.node.end(), other.node.begin(), other.node.end());
-        for (const Triangle& t : other.triangle) {
-            mesh.triangle.push_back({t[0] + first, t[1] + first, t[2] + first});
-        }
-        return refusal(mesh);
-    };
+    // Side by side, across each other, one within the other, and one with a corner on the other's
+    // diagonal.
     const Mesh unit = rectangle_mesh({0, 0}, 1, 1, 1);
     EXPECT_EQ(both(unit, rectangle_mesh({1.5, 0}, 1, 1, 0.5)), "");
     for (const Mesh& other : {rectangle_mesh({0.3, 0.45}, 1, 1, 0.5),

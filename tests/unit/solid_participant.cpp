@@ -183,6 +183,60 @@ TEST_F(SolidParticipant, ARigidBodyIsMovedByTheLoadsOfItsInterface) {
     EXPECT_NEAR(value(report.sample(), "turn"), 0, 1e-14);
 }
 
+TEST_F(SolidParticipant, ProbesOfABoundaryTakeItsReactionAndItsHeat) {
+    v1::Body& body = *configure_.mutable_scene()->mutable_solid()->mutable_body(0);
+    body.set_motion(v1::Body::DEFORMABLE);
+    body.set_thermal_expansion(0);
+    body.set_stiffness_damping(0.1);
+    const auto add = [&](const std::string& curve) -> v1::Boundary& {
+        v1::Boundary& boundary = *body.add_boundary();
+        boundary.set_name(curve + " side");
+        boundary.set_curve(curve);
+        return boundary;
+    };
+    add("left").set_fixed_x(true);
+    add("bottom").set_fixed_y(true);
+    v1::Boundary& right = add("right");
+    right.mutable_traction()->mutable_x()->set_number(0.01);
+    right.mutable_heat_flux()->set_number(6);
+    body.mutable_boundary(0)->mutable_temperature()->set_number(400);
+    v1::Boundary& top = add("top");
+    top.mutable_convection()->set_coefficient(2);
+    top.mutable_convection()->mutable_temperature()->set_number(500);
+    for (const auto& [name, quantity, boundary] : {std::tuple{"pull", "reaction_x", "left side"},
+                                                   {"lift", "reaction_y", "bottom side"},
+                                                   {"none", "reaction_x", "right side"},
+                                                   {"in", "heat_flow", "right side"},
+                                                   {"out", "heat_flow", "left side"},
+                                                   {"wind", "heat_flow", "top side"},
+                                                   {"work", "work_of_loads", ""},
+                                                   {"lost", "dissipated", ""},
+                                                   {"wrong", "energy_residual", ""}}) {
+        add_probe(name, quantity).set_boundary(boundary);
+    }
+    configure();
+    EXPECT_NEAR(value(ready_.sample(), "wind"), 2 * 100, 1e-10);
+    v1::Report report;
+    for (int i = 0; i < 40; ++i) {
+        report = advance(1, 0, 0);
+    }
+    const auto of = [&](const char* name) { return value(report.sample(), name); };
+    EXPECT_NEAR(of("pull"), -0.01, 1e-6); // at rest but for exp(-13)
+    EXPECT_NEAR(of("lift"), 0, 1e-6);
+    EXPECT_EQ(of("none"), 0);
+    EXPECT_NEAR(of("in"), 6, 1e-13);
+    EXPECT_NEAR(of("out") + of("in") + of("wind"), 0, 1e-2); // steady
+    EXPECT_LT(of("out"), -6);
+    // A load put on at once does twice the work that is stored in the end; the rest is lost.
+    const double stored = report.ledger().strain_energy();
+    EXPECT_NEAR(of("work"), 2 * stored, 1e-2 * stored); // strains of 2e-3
+    EXPECT_NEAR(of("lost"), stored, 1e-2 * stored);
+    EXPECT_NEAR(of("wrong"), 0, 1e-18);
+    EXPECT_EQ(report.ledger().figure().at("dissipated"), of("lost"));
+    add_probe("other", "heat_flow").set_boundary("roof");
+    EXPECT_NE(refusal().find("which no body has"), std::string::npos);
+}
+
 TEST_F(SolidParticipant, AProbeTakesTheDifferenceAlongALine) {
     v1::Boundary& hot =
         *configure_.mutable_scene()->mutable_solid()->mutable_body(0)->add_boundary();

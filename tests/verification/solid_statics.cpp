@@ -41,13 +41,15 @@ Point elastica(double a) {
 }
 
 TEST(SolidStatics, Elastica) {
-    // Exact inextensible rod; six linear elements through the thickness are some per cent stiff
-    // against small bending, and much less against a bend that the length limits.
-    const Point one = elastica(1), ten = elastica(10);
+    // Exact inextensible rod; six edge-smoothed elements through the thickness are 0.3 % stiff.
+    const Point one = elastica(1), two = elastica(2), ten = elastica(10);
     RecordProperty("one", std::to_string(one.y() / 0.30172 - 1));
+    RecordProperty("two", std::to_string(two.y() / 0.49346 - 1));
     RecordProperty("ten", std::to_string(ten.y() / 0.81061 - 1));
     EXPECT_NEAR(one.y() / 0.30172, 1, 0.01);
     EXPECT_NEAR(one.x() / 0.05643, 1, 0.02); // of second order in the deflection
+    EXPECT_NEAR(two.y() / 0.49346, 1, 0.01);
+    EXPECT_NEAR(two.x() / 0.16064, 1, 0.01);
     EXPECT_NEAR(ten.y() / 0.81061, 1, 0.01);
     EXPECT_NEAR(ten.x() / 0.55500, 1, 0.01);
 }

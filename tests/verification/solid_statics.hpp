@@ -2,23 +2,13 @@
 
 #pragma once
 
+#include "solid_solver/locator.hpp"
 #include "tests/unit/solid_support.hpp"
 
 namespace duet::solid::test {
 
-/// The node nearest to a place.
-inline std::size_t node_at(const Mesh& mesh, const Point& place) {
-    std::size_t best = 0;
-    for (std::size_t i = 1; i < mesh.node.size(); ++i) {
-        if ((mesh.node[i] - place).squaredNorm() < (mesh.node[best] - place).squaredNorm()) {
-            best = i;
-        }
-    }
-    return best;
-}
-
 inline Point displacement_at(const Body& body, const Point& place) {
-    const std::size_t i = node_at(body.config().mesh, place);
+    const std::size_t i = nearest_node(body.config().mesh, place);
     return Point(body.position()[2 * i], body.position()[2 * i + 1]) - body.config().mesh.node[i];
 }
 

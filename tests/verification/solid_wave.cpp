@@ -168,6 +168,30 @@ INSTANTIATE_TEST_SUITE_P(SolidWave,
                                          std::tuple{Smoothing::element, Stepping::explicit_steps},
                                          std::tuple{Smoothing::edge, Stepping::implicit_steps}));
 
+TEST(SolidWave, StiffnessDampingTakesHalfOfItsCoefficientTimesTheFrequency) {
+    // rho u'' = M (u + b u')_xx: decay b w^2/2 and frequency w sqrt(1 - (b w/2)^2), w = k
+    // sqrt(M/rho).
+    for (const Stepping stepping : {Stepping::explicit_steps, Stepping::implicit_steps}) {
+        constexpr double amplitude = 1e-6, ratio = 0.05;
+        BodyConfig config = strip(0.1, 0.05, 0);
+        config.stepping = stepping;
+        config.implicit_step = 0.01;
+        const Material& m = config.material;
+        const double w = wave_number * std::sqrt((m.lambda() + 2 * m.mu()) / m.density);
+        config.stiffness_damping = 2 * ratio / w;
+        Body body(config);
+        const auto u = test::nodal_vector(config.mesh, [](const Point& p) {
+            return Point(amplitude * std::sin(wave_number * p.x()), 0);
+        });
+        body.mechanics()->set_motion(u, std::vector<double>(u.size(), 0.0), body.temperature());
+        const double period = 2 * std::numbers::pi / (w * std::sqrt(1 - ratio * ratio));
+        body.advance(2 * period); // at a maximum: what the frequency is off by does not count
+        const std::size_t middle = body.nodes() / 2;
+        const double left = body.mechanics()->displacement()[2 * middle] / amplitude;
+        EXPECT_NEAR(-std::log(left) / (2 * period), ratio * w, 0.01 * ratio * w);
+    }
+}
+
 /// Largest speed after `steps` steps of `share` times the bound, from a rough start of 1e-6.
 double speed_after(BodyConfig config, double share, int steps) {
     Body body(config);
