@@ -18,7 +18,7 @@ namespace {
 
 // Rough constants of the estimate, from runs on one core of an ordinary machine.
 constexpr double particle_steps_per_second = 1.3e6; // full particle steps a CPU second
-constexpr double node_steps_per_second = 1e8; // heat steps of a solid's node a CPU second
+constexpr double node_steps_per_second = 1e8;       // heat steps of a solid's node a CPU second
 constexpr double bytes_per_particle = 1500;
 constexpr double bytes_per_node = 500;
 constexpr double bytes_of_a_process = 30e6;
@@ -242,9 +242,9 @@ std::string automatic_steps(const v1::Body& body, const Estimate& e) {
 
 void describe_solid(const v1::Scene& scene, const Estimate& e, std::string& out) {
     for (const v1::Body& body : scene.solid().body()) {
-        out += "solid   body '" + body.name() + "': "
-               + (body.mesh().empty() ? count(nodes_of(body)) + " nodes, edge "
-                                            + number_text(body.element_size()) + " m"
+        out += "solid   body '" + body.name()
+               + "': " + (nodes_of(body) > 0 ? count(nodes_of(body)) + " nodes, " : "")
+               + (body.mesh().empty() ? "edge " + number_text(body.element_size()) + " m"
                                       : "mesh " + body.mesh())
                + "; mechanics: "
                + (body.motion() == v1::Body::DEFORMABLE   ? "thermo-elastic, finite deformation"

@@ -1,5 +1,7 @@
 #include "orchestrator/geometry.hpp"
 
+#include "orchestrator/mesh_body.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -107,17 +109,20 @@ Polygon outline(const v1::Body& body) {
     return corners(disc);
 }
 
-/// What the scene itself tells of a body's area, m2; a mesh file's is known to the solid alone.
 double area_of(const v1::Body& body) {
     const double pi = std::acos(-1.0);
     if (body.has_rectangle())
         return body.rectangle().width() * body.rectangle().height();
+    if (const auto mesh = mesh_of(body))
+        return solid::mesh_area(*mesh);
     const double outer = body.has_disc() ? body.disc().radius() : body.ring().outer_radius();
     return pi * (outer * outer - body.ring().inner_radius() * body.ring().inner_radius());
 }
 
 /// Nodes of a body; a triangulation has one for each square of the elements' size.
 double nodes_of(const v1::Body& body) {
+    if (const auto mesh = mesh_of(body))
+        return static_cast<double>(mesh->node.size());
     if (!body.has_rectangle())
         return body.element_size() > 0 ? area_of(body) / (body.element_size() * body.element_size())
                                        : 0;

@@ -35,7 +35,7 @@ Polygon outline(const v1::Hole& hole);
 /// alone reads.
 Polygon outline(const v1::Body& body);
 
-/// What the scene itself tells of a body's area, m2, and of its nodes, about; 0 for a mesh file.
+/// A body's area, m2, and about how many nodes it has; 0 for a .geo file.
 double area_of(const v1::Body& body);
 double nodes_of(const v1::Body& body);
 

@@ -2,12 +2,15 @@
 
 #include "orchestrator/figures.hpp"
 #include "orchestrator/geometry.hpp"
+#include "orchestrator/mesh_body.hpp"
 #include "orchestrator/reference_table.hpp"
 #include "orchestrator/schema.hpp"
 #include "protocol/function.hpp"
+#include "solid_solver/locator.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -46,6 +49,17 @@ class Checker {
                              body.rectangle().height(),
                              body.disc().radius(),
                              body.ring().outer_radius()});
+        for (int i = 0; i < scene_.solid().body_size(); ++i) {
+            const v1::Body& body = scene_.solid().body(i);
+            std::string fault;
+            if (auto mesh = mesh_of(body, &fault)) {
+                for (const solid::Point& p : mesh->node)
+                    size = std::max(size, (p - mesh->node.front()).cwiseAbs().maxCoeff());
+                mesh_.emplace(&body, std::move(*mesh));
+            } else if (!fault.empty()) {
+                problem(entry("solid.body", i) + ".mesh", fault);
+            }
+        }
         tolerance_ = 1e-9 * size;
     }
 
@@ -83,6 +97,9 @@ class Checker {
     void check_body(const v1::Body& body, const std::string& path);
     void check_shape(const v1::Body& body, const std::string& path);
     void check_rectangle(const v1::Body& body, const std::string& path);
+    void check_mesh(const v1::Body& body, const solid::Mesh& mesh, const std::string& path);
+    std::vector<std::string> curves_of(const v1::Body& body) const;
+    bool holds(const v1::Body& body, const Point& p, bool otherwise) const;
     void
     check_boundary(const v1::Boundary& boundary, const v1::Body& body, const std::string& path);
     void
@@ -144,6 +161,7 @@ class Checker {
 
     const Case& case_;
     const v1::Scene& scene_;
+    std::map<const v1::Body*, solid::Mesh> mesh_; // of .msh files that can be computed with
     Polygon region_;
     double tolerance_ = 0;
     bool region_good_ = false;
@@ -410,7 +428,7 @@ void Checker::check_point_loads(const v1::Body& body, const std::string& path) {
     }
 }
 
-/// A body has one shape, with what belongs to it. What a mesh file holds is the solid's to check.
+/// A body has one shape, with what belongs to it. What a .geo file makes is the solid's to check.
 void Checker::check_shape(const v1::Body& body, const std::string& path) {
     const std::string& mesh = body.mesh();
     const int shapes = body.has_rectangle() + body.has_disc() + body.has_ring() + !mesh.empty();
@@ -436,6 +454,30 @@ void Checker::check_shape(const v1::Body& body, const std::string& path) {
         problem(path + ".ring", path + ".ring needs an inner radius smaller than its outer one");
     if (body.has_rectangle())
         check_rectangle(body, path);
+    if (mesh_.contains(&body))
+        check_mesh(body, mesh_.at(&body), path);
+}
+
+void Checker::check_mesh(const v1::Body& body, const solid::Mesh& mesh, const std::string& path) {
+    for (const solid::Edge& edge : solid::boundary_edges(mesh)) {
+        const Point p = point(mesh.node[edge.a].x(), mesh.node[edge.a].y());
+        if (region_good_ && !inside(region_, p, tolerance_)) {
+            problem(path + ".mesh",
+                    "the body '" + body.name() + "' reaches out of fluid.region at " + at_text(p)
+                        + "; it may touch the region's boundary from within");
+            break;
+        }
+    }
+    std::vector<std::string> names = mesh.part_name;
+    std::erase(names, "");
+    for (int i = 0; i < body.material_size(); ++i) {
+        const std::string& part = body.material(i).part();
+        if (std::find(names.begin(), names.end(), part) == names.end())
+            problem(entry(path + ".material", i) + ".part",
+                    "the mesh has no part '" + part + "'; "
+                        + (names.empty() ? "its surfaces carry no names"
+                                         : "there is " + list(names, "and")));
+    }
 }
 
 void Checker::check_rectangle(const v1::Body& body, const std::string& path) {
@@ -451,8 +493,10 @@ void Checker::check_rectangle(const v1::Body& body, const std::string& path) {
                     + number_text(std::min(rectangle.width(), rectangle.height())) + " m");
 }
 
-/// The curves of a body's shape; those of a mesh file are known to the solid alone.
-std::vector<std::string> curves_of(const v1::Body& body) {
+/// The curves of a body's shape; those of a .geo file are known to the solid alone.
+std::vector<std::string> Checker::curves_of(const v1::Body& body) const {
+    if (mesh_.contains(&body))
+        return boundary_curves(mesh_.at(&body));
     if (body.has_rectangle())
         return {"left", "right", "bottom", "top"};
     if (body.has_disc())
@@ -490,17 +534,31 @@ void Checker::check_boundary(const v1::Boundary& boundary,
                 path + " prescribes a temperature and a heat flux or convection; keep one of them");
     if (!boundary.curve().empty()) {
         const std::vector<std::string> known = curves_of(body);
-        if (!known.empty()
+        if ((!known.empty() || mesh_.contains(&body))
             && std::find(known.begin(), known.end(), boundary.curve()) == known.end())
             problem(path + ".curve",
-                    "the body has no curve '" + boundary.curve() + "'; there is "
-                        + list(known, "and"));
+                    "the body has no curve '" + boundary.curve() + "' on its boundary; "
+                        + (known.empty() ? "its curves carry no names"
+                                         : "there is " + list(known, "and")));
         return;
     }
     const Point& a = boundary.along(0);
     const Point& b = boundary.along(boundary.along_size() - 1);
     if (distance(a, b) <= tolerance_)
         return problem(path + ".along", path + ".along needs two different points");
+    if (mesh_.contains(&body)) {
+        const auto on_it = [&](const solid::Point& p) {
+            return on_piece(point(p.x(), p.y()), a, b, tolerance_);
+        };
+        const solid::Mesh& mesh = mesh_.at(&body);
+        const std::vector<solid::Edge> edges = solid::boundary_edges(mesh);
+        if (std::none_of(edges.begin(), edges.end(), [&](const solid::Edge& edge) {
+                return on_it(mesh.node[edge.a]) && on_it(mesh.node[edge.b]);
+            }))
+            problem(path + ".along",
+                    "no side of the body lies between " + at_text(a) + " and " + at_text(b));
+        return;
+    }
     if (!body.has_rectangle())
         return; // the solid knows where its boundary runs
     const Polygon sides = corners(body.rectangle());
@@ -581,6 +639,15 @@ void Checker::check_probed_boundary(const v1::Probe& probe, const std::string& p
     must_be_known(probe.boundary(), "boundary", known, path + ".boundary");
 }
 
+/// The point lies in the body or on its boundary; `otherwise`, where the checks do not know.
+bool Checker::holds(const v1::Body& body, const Point& p, bool otherwise) const {
+    if (body.has_rectangle())
+        return inside(corners(body.rectangle()), p, tolerance_);
+    if (mesh_.contains(&body))
+        return solid::interpolation_at(mesh_.at(&body), {p.x(), p.y()}).has_value();
+    return otherwise;
+}
+
 /// The point, and its mirror image if one is asked for, lie where there is something to measure.
 void Checker::check_place(const v1::Probe& probe, const Point& p, const std::string& path) {
     std::vector<Point> points = {p};
@@ -592,8 +659,7 @@ void Checker::check_place(const v1::Probe& probe, const Point& p, const std::str
             const auto& bodies = scene_.solid().body();
             const bool found = std::any_of(bodies.begin(), bodies.end(), [&](const v1::Body& body) {
                 return (probe.body().empty() || probe.body() == body.name())
-                       && (!body.has_rectangle()
-                           || inside(corners(body.rectangle()), q, tolerance_));
+                       && holds(body, q, true);
             });
             if (!found)
                 problem(path, "the point " + where + " lies in no body");
@@ -605,7 +671,8 @@ void Checker::check_place(const v1::Probe& probe, const Point& p, const std::str
             if (inside(outline(hole), q, tolerance_) && !on_boundary(outline(hole), q, tolerance_))
                 problem(path, "the point " + where + " lies in the hole '" + hole.name() + "'");
         for (const v1::Body& body : scene_.solid().body())
-            if (body.has_rectangle() && strictly_inside(body.rectangle(), q, tolerance_))
+            if (body.has_rectangle() ? strictly_inside(body.rectangle(), q, tolerance_)
+                                     : mesh_.contains(&body) && holds(body, q, false))
                 problem(path,
                         "the point " + where + " lies in the body '" + body.name()
                             + "', where there is no fluid");

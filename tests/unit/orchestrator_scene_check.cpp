@@ -146,6 +146,75 @@ TEST(SceneCheck, Probes) {
     expect_fault("probe[0].of=\"solid\"", "lies in no body");
 }
 
+/// The good case with a triangle from (1, 0) over (3, 0) to (2, 1) from a mesh file as its body.
+class MeshBody : public testing::Test {
+  protected:
+    MeshBody() {
+        folder_ =
+            std::filesystem::temp_directory_path() / ("duet-mesh-" + std::to_string(getpid()));
+        std::filesystem::create_directories(folder_);
+        write("3 0 0");
+    }
+    ~MeshBody() override { std::filesystem::remove_all(folder_); }
+
+    void write(const std::string& second_node) {
+        std::ofstream(folder_ / "body.msh")
+            << "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n"
+               "$PhysicalNames\n2\n1 1 \"foot\"\n2 2 \"steel\"\n$EndPhysicalNames\n"
+               "$Entities\n0 1 1 0\n1 0 0 0 1 1 0 1 1 0\n1 0 0 0 1 1 0 1 2 0\n$EndEntities\n"
+               "$Nodes\n1 3 1 3\n2 1 0 3\n1\n2\n3\n1 0 0\n"
+            << second_node
+            << "\n2 1 0\n$EndNodes\n"
+               "$Elements\n2 2 1 2\n1 1 1 1\n1 1 2\n2 1 2 1\n2 1 2 3\n$EndElements\n";
+    }
+
+    std::string problems_of(const std::vector<std::string>& overrides = {}) {
+        std::string text = good;
+        const std::string rectangle = "rectangle = { corner = [1, 0], width = 2, height = 1 }\n"
+                                      "element_size = 0.5";
+        text.replace(text.find(rectangle), rectangle.size(), "mesh = 'body.msh'");
+        std::ofstream(folder_ / "case.toml") << text;
+        try {
+            check_scene(parse_case(text, (folder_ / "case.toml").string(), overrides));
+        } catch (const CaseError& error) {
+            return error.what();
+        }
+        return "";
+    }
+
+    std::filesystem::path folder_;
+};
+
+TEST_F(MeshBody, IsCheckedBeforeAnythingStarts) {
+    const auto expect = [&](const std::string& change, const std::string& words) {
+        const std::string found = problems_of({change});
+        EXPECT_NE(found.find(words), std::string::npos) << change << " gave: " << found;
+    };
+    EXPECT_EQ(problems_of(), "");
+    EXPECT_EQ(problems_of({"solid.body[0].boundary=[{ name = 'b', curve = 'foot' }]"}), "");
+    expect("solid.body[0].boundary=[{ name = 'b', curve = 'feet' }]",
+           "no curve 'feet' on its boundary; there is foot");
+    expect("solid.body[0].boundary[0].along=[[1, 0], [2, 0.9]]", "no side of the body lies");
+    expect("solid.body[0].material=[{ part = 'brass', density = 2 }]",
+           "the mesh has no part 'brass'; there is steel");
+    expect("solid.body[0].part=['brass']", "has no physical surface 'brass'");
+    expect("probe[0].at=[2, 0.5]", "lies in the body 'plate'");
+    EXPECT_EQ(problems_of({"probe[0].of=\"solid\"", "probe[0].at=[2, 0.5]"}), "");
+    EXPECT_NE(problems_of({"probe[0].of=\"solid\"", "probe[0].at=[1.2, 0.5]"}).find("no body"),
+              std::string::npos);
+    write("5 0 0");
+    expect("solid.body[0].boundary=[]", "reaches out of fluid.region at [5, 0]");
+    write("1 0 0");
+    expect("solid.body[0].boundary=[]", "no area");
+}
+
+TEST_F(MeshBody, IsCountedAsItIs) {
+    v1::Body body;
+    body.set_mesh((folder_ / "body.msh").string());
+    EXPECT_EQ(nodes_of(body), 3);
+    EXPECT_EQ(area_of(body), 1);
+}
+
 TEST(SceneCheck, ProbeNamesAndPlaces) {
     EXPECT_EQ(problems(good, {"probe[0].mirror=2.5"}), "");
     expect_fault("probe[0].mirror=0.5", "the point [-1, 2] (the mirror image) lies outside");
