@@ -7,6 +7,7 @@
 #include "protocol/function.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 namespace duet::fluid {
@@ -272,6 +273,11 @@ void Participant::fill(v1::Ledger& ledger) const {
     ledger.set_exchanged_heat(now.exchanged_heat);
     ledger.set_exchanged_impulse(now.exchanged_impulse);
     auto& figure = *ledger.mutable_figure();
+    double through_walls = 0;
+    for (const WallReport& wall : fluid_->walls()) {
+        through_walls += std::abs(wall.heat);
+    }
+    figure["heat_through_walls"] = through_walls; // without signs: what the drift is measured by
     figure["closure_conduction"] = now.closure_conduction;
     figure["closure_conduction_abs"] = now.closure_conduction_abs;
     figure["closure_shift"] = now.closure_shift;

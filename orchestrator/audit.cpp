@@ -119,8 +119,11 @@ void Audit::follow_heat(const v1::Ledger* solid, const v1::Ledger* fluid) {
         // What is still under way was booked by the fluid and not yet by the solid.
         if (in_flight_ || !solid || !fluid)
             residual -= ledger->heat_from_interface();
+        // What one wall gives and another takes is exchanged, whatever is left of it in sum.
+        const auto through_walls = ledger->figure().find("heat_through_walls");
         scale = std::max({scale,
                           ledger->exchanged_heat(),
+                          through_walls == ledger->figure().end() ? 0 : through_walls->second,
                           std::abs(ledger->heat_from_walls()),
                           std::abs(ledger->heat_from_sources())});
     }

@@ -119,6 +119,18 @@ TEST(Audit, HeatThatCameFromNowhereIsDrift) {
     EXPECT_DOUBLE_EQ(audit.balances().total_heat_drift, 0.1);
 }
 
+TEST(Audit, HeatDriftIsMeasuredByWhatPassesTheWalls) {
+    Audit audit(v1::Coupling::FLUID_FIRST, 1e-12);
+    const v1::Ledger start;
+    audit.start(nullptr, &start);
+    v1::Ledger fluid; // one wall gave 500, the other took 498, and the fluid holds 1
+    fluid.set_heat(1);
+    fluid.set_heat_from_walls(2);
+    (*fluid.mutable_figure())["heat_through_walls"] = 998;
+    EXPECT_EQ(audit.window(nullptr, &fluid), std::nullopt);
+    EXPECT_DOUBLE_EQ(audit.balances().total_heat_drift, 1.0 / 998);
+}
+
 TEST(Audit, WallsAndSourcesExplainHeat) {
     Audit audit(v1::Coupling::FLUID_FIRST, 1e-12);
     const v1::Ledger start;
