@@ -222,6 +222,7 @@ void Participant::advance(const protocol::Window& window,
     report.set_steps(static_cast<std::uint32_t>(steps));
     fill(*report.mutable_ledger());
     report.set_stable_step(longest_window(report.ledger()));
+    load.impedance = scene_.fluid().density() * report.ledger().figure().at("sound_speed");
     if (window.sample) {
         take_probes(*report.mutable_sample());
         fluid_->mark();

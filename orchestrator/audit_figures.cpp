@@ -14,6 +14,9 @@ const std::vector<Figure>& audit_figures() {
          "motion and loads frozen in a window make"},
         {"total_heat_drift",
          "largest heat gained or lost beyond what was let in, relative to all exchanged"},
+        {"mechanical_energy_residual",
+         "kinetic and strain energy of both sides beyond the work and the losses that they booked, "
+         "at the end, relative to the largest of these"},
         {"mass_drift", "largest relative change of a solver's mass"},
         {"waiting_share_fluid", "share of its wall time that the fluid waits for others"},
         {"waiting_share_solid", "share of its wall time that the solid waits for others"},

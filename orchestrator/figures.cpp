@@ -3,6 +3,9 @@
 #include "orchestrator/run.hpp"
 #include "protocol/version.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace duet::orchestrator {
 
 std::map<std::string, double> ledger_figures(const v1::Ledger& ledger) {
@@ -14,6 +17,31 @@ std::map<std::string, double> ledger_figures(const v1::Ledger& ledger) {
                 ledger.GetReflection()->GetDouble(ledger, descriptor.field(i));
     return figures;
 }
+
+namespace {
+
+/// What both sides' kinetic and strain energy gained beyond the work and the losses that they
+/// booked, relative to the largest of those: what the two schemes and the frozen window make.
+/// Fluid and solid book the work at the interface each as they saw it.
+void add_energy_residual(std::map<std::string, double>& figures) {
+    if (!figures.count("fluid.mechanical_residual") || !figures.count("solid.energy_residual"))
+        return;
+    const double residual = figures["fluid.mechanical_residual"] + figures["solid.energy_residual"]
+                            + figures["fluid.work"] + figures["solid.work"];
+    double turnover = 0;
+    for (const char* name : {"fluid.body_force_work",
+                             "fluid.work_from_walls",
+                             "fluid.viscous_loss",
+                             "fluid.work",
+                             "solid.work_of_own_loads",
+                             "solid.strain_energy",
+                             "solid.kinetic_energy"})
+        turnover = std::max(turnover, std::abs(figures[name]));
+    if (turnover > 0)
+        figures["mechanical_energy_residual"] = residual / turnover;
+}
+
+} // namespace
 
 std::map<std::string, double> figures_of(const RunResult& result) {
     std::map<std::string, double> figures = {
@@ -35,6 +63,7 @@ std::map<std::string, double> figures_of(const RunResult& result) {
         for (const auto& [name, value] : ledger_figures(player.ledger))
             figures[who + "." + name] = value;
     }
+    add_energy_residual(figures);
     return figures;
 }
 

@@ -143,6 +143,7 @@ void Recorder::record(const v1::ToPeer& exchange) {
         group.attribute("impulse_x", load.impulse_x());
         group.attribute("impulse_y", load.impulse_y());
         group.attribute("heat", load.heat());
+        group.attribute("impedance", load.impedance());
         write_array(group, "force", load.force(), 2);
         write_array(group, "heat_flow", load.heat_flow(), 1);
     }

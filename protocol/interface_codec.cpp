@@ -260,6 +260,7 @@ void encode(const Stamp& stamp,
     check_scalar(subject, "impulse_x", load.impulse_x);
     check_scalar(subject, "impulse_y", load.impulse_y);
     check_scalar(subject, "heat", load.heat);
+    check_scalar(subject, "impedance", load.impedance);
     v1::InterfaceLoad& out = *message.mutable_load();
     out.set_run_id(stamp.run_id);
     out.set_window(stamp.window.index);
@@ -271,6 +272,7 @@ void encode(const Stamp& stamp,
     out.set_impulse_x(load.impulse_x);
     out.set_impulse_y(load.impulse_y);
     out.set_heat(load.heat);
+    out.set_impedance(load.impedance);
 }
 
 void decode(const v1::ToPeer& message,
@@ -290,11 +292,13 @@ void decode(const v1::ToPeer& message,
     take(subject, "heat_flow", in.heat_flow(), size.segments, 1, load.heat_flow);
     for (const auto& [field, value] : {std::pair{"impulse_x", in.impulse_x()},
                                        std::pair{"impulse_y", in.impulse_y()},
-                                       std::pair{"heat", in.heat()}})
+                                       std::pair{"heat", in.heat()},
+                                       std::pair{"impedance", in.impedance()}})
         check_scalar(subject, field, value);
     load.impulse_x = in.impulse_x();
     load.impulse_y = in.impulse_y();
     load.heat = in.heat();
+    load.impedance = in.impedance();
 }
 
 void check_report(const v1::Report& report, const Window& window) {

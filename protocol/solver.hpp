@@ -53,7 +53,9 @@ struct InterfaceLoad {
     std::vector<double> heat_flow; ///< [M] W/m, into the solid: flux times the segment's length
     double impulse_x = 0;          ///< N s/m, sum of force times length, as the fluid booked it
     double impulse_y = 0;
-    double heat = 0; ///< J/m, sum of heat_flow times length, as the fluid booked it
+    double heat = 0;      ///< J/m, sum of heat_flow times length, as the fluid booked it
+    double impedance = 0; ///< Pa s/m, by which the fluid answers a velocity of the wall at once,
+                          ///< rho c; 0: not told
 };
 
 /// One coupling window.

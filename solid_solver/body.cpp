@@ -202,6 +202,9 @@ std::uint32_t Body::advance_implicitly(double length) {
 
 std::uint32_t Body::advance_explicitly(double length) {
     constexpr double steps_between_updates = 256;
+    if (mechanics_) {
+        mechanics_->add_damping(exchange_damping_);
+    }
     std::uint32_t taken = 0;
     for (double left = length; left > 0;) {
         const double limit = safety * stable_step();
@@ -290,7 +293,7 @@ EnergyAccount Body::energy() const {
         out.expansion = mechanics_->elasticity().expansion_work();
         out.steps = work.steps;
         out.dissipated = work.mass_damping;
-        if (config_.stiffness_damping > 0 || choice_ == 2) {
+        if (mechanics_->stiffness_damping() > 0 || choice_ == 2) {
             out.dissipated -= out.residual();
         }
     }

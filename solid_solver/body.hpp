@@ -48,6 +48,8 @@ class Body {
     double mass() const { return mass_; } ///< kg/m
     bool deformable() const { return mechanics_.has_value(); }
 
+    /// Stiffness damping that the exchange asks for in the explicit steps from now on, s.
+    void set_exchange_damping(double damping) { exchange_damping_ = damping; }
     /// Constant loads from the interface from now on: heat [N] W/m and force [N][2] N/m.
     void set_interface_load(std::span<const double> heat, std::span<const double> force);
 
@@ -123,6 +125,7 @@ class Body {
     BodyConfig config_;
     Domains domains_;
     double area_ = mesh_area(config_.mesh), mass_ = 0;
+    double exchange_damping_ = 0; ///< s
     Heat heat_;
     std::optional<Mechanics> mechanics_;
     std::optional<Implicit> implicit_;

@@ -92,6 +92,8 @@ class Elasticity {
     };
     Linearised linearised(std::size_t domain) const;
 
+    /// Coefficient of the stiffness-proportional damping (63) from now on, s.
+    void set_damping(double damping) { damping_ = damping; }
     double strain_energy() const; ///< J/m, without the thermal part of the stress
     /// J/m since the last reset or settle: sum over the steps of beta (T - T0) d tr(E),
     /// what the body has worked against its stiffness and its loads by expanding while warm.

@@ -9,8 +9,8 @@ Mechanics::Mechanics(const BodyConfig& body,
                      const Domains& domains,
                      std::span<const double> temperature,
                      std::span<const double> capacity)
-    : mass_damping_(body.mass_damping), damping_(body.stiffness_damping),
-      capacity_(capacity.begin(), capacity.end()), threads_(body.threads),
+    : mass_damping_(body.mass_damping), own_damping_(body.stiffness_damping),
+      damping_(own_damping_), capacity_(capacity.begin(), capacity.end()), threads_(body.threads),
       elasticity_(body, domains), spectrum_(2 * body.mesh.node.size()) {
     std::vector<double> density;
     for (const Material& m : body.materials()) {
@@ -300,6 +300,11 @@ void Mechanics::update_frequency() {
     // taken up by and by.
     const double now = std::sqrt(spectrum_.largest(adiabatic_tangent(), inverse_mass_, 8));
     frequency_ = std::max(now, 0.99 * frequency_);
+}
+
+void Mechanics::add_damping(double wanted) {
+    damping_ = own_damping_ + (frequency_ > 0 ? std::min(wanted, 1 / frequency_) : 0);
+    elasticity_.set_damping(damping_);
 }
 
 double Mechanics::stable_step() const {

@@ -23,11 +23,32 @@ Solid::Solid(std::vector<BodyConfig> bodies, const std::vector<Point>& region) {
     if (!region.empty()) {
         interface_ = wet_interface(shapes, region);
     }
+    wet_length_.assign(bodies_.size(), 0.0);
+    for (const Interface::Segment& segment : interface_.segment) {
+        const Interface::Node &a = interface_.node[segment.a], &b = interface_.node[segment.b];
+        const Mesh& mesh = bodies_[a.body].config().mesh;
+        wet_length_[a.body] += (mesh.node[b.node] - mesh.node[a.node]).norm();
+    }
 }
 
-std::uint32_t
-Solid::advance(double length, std::span<const double> force, std::span<const double> heat_flow) {
+/// The fluid answers the velocity that it was told with the pressure Z v. Of a vibration with a
+/// period between one and two windows that answer has the wrong sign: it feeds its energy by up to
+/// 0.5 Z S/M (S the body's wet length, M its mass). A stiffness damping b takes b w^2, w >= pi over
+/// the window. This b is pi^2 times what balances the two where the whole body swings, for surfaces
+/// swing more.
+void Solid::damp_exchange(double length, double impedance) {
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+        bodies_[b].set_exchange_damping(0.5 * impedance * wet_length_[b] / bodies_[b].mass()
+                                        * length * length);
+    }
+}
+
+std::uint32_t Solid::advance(double length,
+                             std::span<const double> force,
+                             std::span<const double> heat_flow,
+                             double impedance) {
     set_loads(force, heat_flow);
+    damp_exchange(length, impedance);
     interface_state(position_before_, velocity_, temperature_);
     std::uint32_t steps = 0;
     for (Body& body : bodies_) {

@@ -35,8 +35,12 @@ class Solid {
     /// [segments] W/m of the interface, both into the solid. A segment's heat goes in halves to its
     /// nodes: the linear shape functions under a uniform flux (55). Returns the largest
     /// number of steps that a body took.
-    std::uint32_t
-    advance(double length, std::span<const double> force, std::span<const double> heat_flow);
+    /// `impedance` of the fluid, Pa s/m: what the exchange would feed, vibrations faster than a
+    /// window, is damped accordingly (explicit steps of deformable bodies); 0: nothing is.
+    std::uint32_t advance(double length,
+                          std::span<const double> force,
+                          std::span<const double> heat_flow,
+                          double impedance = 0);
 
     /// State of the interface: position [N][2], velocity [N][2], temperature [N].
     void interface_state(std::vector<double>& position,
@@ -82,12 +86,14 @@ class Solid {
     /// The largest of lambda_max of sum ds M^-1 g g^T over the rigid bodies, m2/kg; see
     /// added_mass_limit.
     double rigid_answer() const;
+    void damp_exchange(double length, double impedance);
     void set_loads(std::span<const double> force, std::span<const double> heat_flow);
     void book(double length, std::span<const double> force, std::span<const double> heat_flow);
 
     std::deque<Body> bodies_; // a deque: bodies stay where they are
     Interface interface_;
     std::vector<std::vector<double>> nodal_heat_, nodal_force_; ///< of each body
+    std::vector<double> wet_length_;                            ///< m, of each body
     InterfaceAccount account_;
     /// Of the interface, at the start of a window and at its end; work space.
     std::vector<double> position_before_, position_, velocity_, temperature_;

@@ -81,8 +81,12 @@ void Participant::advance(const protocol::Window& window,
                           const protocol::InterfaceLoad& load,
                           protocol::InterfaceMotion& end,
                           v1::Report& report) {
-    report.set_steps(
-        reported([&] { return solid_->advance(window.length, load.force, load.heat_flow); }));
+    report.set_steps(reported([&] {
+        return solid_->advance(window.length,
+                               load.force,
+                               load.heat_flow,
+                               scene_.coupling().damping() ? load.impedance : 0);
+    }));
     time_ = window.time + window.length;
     fill(end);
     report.set_stable_step(longest_window());
@@ -164,7 +168,7 @@ void Participant::fill(v1::Ledger& ledger) const {
     ledger.set_exchanged_impulse(passed.exchanged_impulse);
     auto& figure = *ledger.mutable_figure();
     figure["thermoelastic_heat"] = thermoelastic;
-    figure["work_of_loads"] = energy.loads;
+    figure["work_of_own_loads"] = energy.loads;
     figure["work_of_supports"] = energy.supports;
     figure["work_of_expansion"] = energy.expansion;
     figure["dissipated"] = energy.dissipated;

@@ -115,6 +115,38 @@ TEST(SolidExchange, ASegmentHeatsItsTwoNodesAlike) {
     }
 }
 
+// Free vibrations of a bar under no load: what the exchange asks for takes b w^2 of their energy.
+TEST(SolidExchange, VibrationsFasterThanAWindowAreDampedByTheImpedance) {
+    const double pi = 3.141592653589793, impedance = 0.02, window = 1;
+    BodyConfig config = test::steel_like(rectangle_mesh({1, 1}, 2, 0.5, 0.125));
+    config.material.thermal_expansion = 0;
+    config.material.poissons_ratio = 0;
+    config.initial_velocity = {
+        Field([=](const Point& p, double) { return 1e-4 * std::cos(pi * (p.x() - 1) / 2); }), 0.0};
+    Solid solid({config}, cavity);
+    const std::vector<double> force(2 * solid.interface().node.size(), 0.0);
+    const std::vector<double> heat(solid.interface().segment.size(), 0.0);
+    const Mechanics& mechanics = *solid.bodies()[0].mechanics();
+    const auto energy = [&] { return mechanics.kinetic_energy() + mechanics.strain_energy(); };
+    const double start = energy(), time = 60 * window;
+    for (int k = 0; k < 60; ++k) {
+        solid.advance(window, force, heat);
+    }
+    const double undamped = energy();
+    EXPECT_NEAR(undamped, start, 5e-3 * start); // explicit steps: to (w dt)^2/4
+    for (int k = 0; k < 60; ++k) {
+        solid.advance(window, force, heat, impedance);
+    }
+    const double frequency = pi / 2 * std::sqrt(5.0 / 2), damping = 0.5 * impedance * 5 / 2;
+    EXPECT_DOUBLE_EQ(mechanics.stiffness_damping(), damping);
+    const double rate = damping * frequency * frequency;
+    EXPECT_NEAR(std::log(undamped / energy()) / time, rate, 0.03 * rate);
+    // Never more than half of the critical damping of the fastest vibration.
+    const double step = solid.bodies()[0].stable_step();
+    solid.advance(window, force, heat, 1e6);
+    EXPECT_GT(solid.bodies()[0].stable_step(), 0.6 * step);
+}
+
 TEST(SolidExchange, LimitsOfTheWindow) {
     std::vector<BodyConfig> bodies{test::steel_like(rectangle_mesh({0.5, 0.5}, 1, 1, 0.1))};
     Solid solid(bodies, cavity);

@@ -64,6 +64,7 @@ class Codec:
         out.heat_flow = _put(subject, "heat_flow", load.heat_flow, (self.segments,))
         out.impulse_x, out.impulse_y = (float(value) for value in load.impulse)
         out.heat = float(load.heat)
+        out.impedance = float(load.impedance)
         _check_totals(subject, out)
         return message
 
@@ -76,7 +77,8 @@ class Codec:
         _check_totals(subject, load)
         return InterfaceLoad(_take(subject, "force", load.force, (self.nodes, 2)),
                              _take(subject, "heat_flow", load.heat_flow, (self.segments,)),
-                             (load.impulse_x, load.impulse_y), load.heat, load.time, load.length)
+                             (load.impulse_x, load.impulse_y), load.heat, load.time, load.length,
+                             load.impedance)
 
     def _motion(self, subject, motion, window, time):
         message = v1.ToPeer()
@@ -165,7 +167,7 @@ def _check_finite(subject, field, values):
 
 
 def _check_totals(subject, load):
-    for field in ("impulse_x", "impulse_y", "heat"):
+    for field in ("impulse_x", "impulse_y", "heat", "impedance"):
         if not math.isfinite(getattr(load, field)):
             subject.refuse_number(field, getattr(load, field))
 

@@ -71,6 +71,7 @@ class InterfaceLoad:
     heat: float = 0.0  # J/m, sum of heat_flow times length, as the fluid booked it
     time: float = 0.0  # s, start of the window, set by the library
     length: float = 0.0  # s, set by the library
+    impedance: float = 0.0  # Pa s/m, by which the fluid answers a velocity of the wall at once; 0: not told
 
 
 class Solver:
