@@ -275,12 +275,12 @@ void describe_coupling(const v1::Scene& scene, const Estimate& e, std::string& o
             continue; // the solid reports its limits when it has read the mesh
         if (e.heat && fluid.conductivity() > 0 && !body.insulated()) {
             // The first layer of the solid must not overshoot:
-            // rho_s c_s dx_s / 2 > window k_f / (0.5 dx).
-            const double longest = body.density() * body.heat_capacity() * body.element_size() / 2
+            // rho_s c_s dx_s / 2 > 2 window k_f / (0.5 dx).
+            const double longest = body.density() * body.heat_capacity() * body.element_size() / 4
                                    * 0.5 * fluid.spacing() / fluid.conductivity();
             out += "        '" + body.name() + "', heat: windows up to " + number(longest)
                    + " s are stable; " + number(longest / e.window) + " times the window"
-                   + (longest < 1.7 * e.window ? ": TOO CLOSE, shorten time.window" : "") + "\n";
+                   + (longest < e.window ? ": TOO CLOSE, shorten time.window" : "") + "\n";
         }
         if (body.motion() == v1::Body::DEFORMABLE) {
             if (const double viscosity = fluid.density() * fluid.kinematic_viscosity();

@@ -156,7 +156,7 @@ double Solid::exchange_limit(double conductivity, double spacing) const {
             least = std::min(least, material.density * material.heat_capacity);
         }
         const double layer = least * edge / 2;
-        return layer * (spacing / 2) / conductivity;
+        return 0.5 * layer * (spacing / 2) / conductivity;
     });
 }
 

@@ -49,8 +49,8 @@ class Solid {
 
     /// Longest window for which the first layer of nodes cannot overshoot against a fluid of
     /// conductivity `conductivity` and particle spacing `spacing` (method, section 3):
-    /// rho c dx_s/2 >= window k_f / (dx/2), dx_s the length of a wet edge. Insulated bodies do not
-    /// limit it. 0: no limit.
+    /// rho c dx_s/2 >= 2 window k_f / (dx/2), dx_s the length of a wet edge. Insulated bodies do
+    /// not limit it. 0: no limit.
     double exchange_limit(double conductivity, double spacing) const;
 
     /// Longest window for which the reaction of the fluid, frozen in it, stays lighter than the

@@ -111,8 +111,8 @@ TEST_F(SolidParticipant, ReadyTellsTheInterfaceAndTheLimit) {
     EXPECT_EQ(ready_.nodes(), 40u);
     EXPECT_EQ(ready_.segments(), 40u);
     EXPECT_EQ(ready_.unknowns(), 121u);
-    // rho c dx_s/2 (dx/2) / k_f: the exchange, not the own step, limits the window.
-    EXPECT_NEAR(ready_.stable_step(), 2 * 3 * 0.05 * 0.1 / 0.5, 1e-14);
+    // rho c dx_s/2 (dx/2) / (2 k_f): the exchange, not the own step, limits the window.
+    EXPECT_NEAR(ready_.stable_step(), 2 * 3 * 0.05 * 0.1 / 0.5 / 2, 1e-14);
     EXPECT_EQ(motion_.nodes(), 40u);
     EXPECT_EQ(motion_.temperature[7], 400);
     EXPECT_EQ(motion_.position[0], 0.5);

@@ -150,8 +150,8 @@ TEST(SolidExchange, VibrationsFasterThanAWindowAreDampedByTheImpedance) {
 TEST(SolidExchange, LimitsOfTheWindow) {
     std::vector<BodyConfig> bodies{test::steel_like(rectangle_mesh({0.5, 0.5}, 1, 1, 0.1))};
     Solid solid(bodies, cavity);
-    // rho c dx_s/2 (dx/2) / k_f and rho_s dx_s / (rho_f c)
-    EXPECT_NEAR(solid.exchange_limit(0.6, 0.2), 2 * 3 * 0.05 * 0.1 / 0.6, 1e-15);
+    // rho c dx_s/2 (dx/2) / (2 k_f) and rho_s dx_s / (rho_f c)
+    EXPECT_NEAR(solid.exchange_limit(0.6, 0.2), 2 * 3 * 0.05 * 0.1 / 0.6 / 2, 1e-15);
     EXPECT_NEAR(solid.added_mass_limit(1.5, 20), 2 * 0.1 / (1.5 * 20), 1e-15);
     EXPECT_NEAR(solid.drag_limit(0.6, 0.2), 2 * 0.05 * 0.1 / 0.6 / 2, 1e-15);
     EXPECT_EQ(solid.exchange_limit(0, 0.2), 0);
