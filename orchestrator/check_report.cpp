@@ -204,6 +204,7 @@ void describe_fluid(const v1::Scene& scene, const Estimate& e, std::string& out)
     for (const v1::Wall& wall : fluid.wall())
         out +=
             "        wall '" + wall.name() + "': " + heat_condition(wall)
+            + (wall.slip() ? ", slips" : "")
             + (wall_speed(wall, extent(outline(fluid)), Values(scene)) > 0 ? ", moving\n" : "\n");
     for (const v1::Hole& hole : fluid.hole())
         out +=

@@ -34,6 +34,9 @@ void add_energy_residual(std::map<std::string, double>& figures) {
                              "fluid.viscous_loss",
                              "fluid.work",
                              "solid.work_of_own_loads",
+                             "solid.work_of_supports",
+                             "solid.work_of_expansion",
+                             "solid.dissipated",
                              "solid.strain_energy",
                              "solid.kinetic_energy"})
         turnover = std::max(turnover, std::abs(figures[name]));

@@ -303,7 +303,7 @@ void Mechanics::update_frequency() {
 }
 
 void Mechanics::add_damping(double wanted) {
-    damping_ = own_damping_ + (frequency_ > 0 ? std::min(wanted, 1 / frequency_) : 0);
+    damping_ = own_damping_ + (frequency_ > 0 ? std::min(wanted, 4 / frequency_) : 0);
     elasticity_.set_damping(damping_);
 }
 

@@ -137,8 +137,8 @@ class Mechanics {
                 std::span<const double> temperature);
     double mass_damping() const { return mass_damping_; } ///< 1/s
     double stiffness_damping() const { return damping_; } ///< s
-    /// Adds `wanted` s to the body's own stiffness damping, or less: at most half of the critical
-    /// damping of the fastest vibration, which leaves 0.6 of the stable step.
+    /// Adds `wanted` s to the body's own stiffness damping, or less: at most twice the critical
+    /// damping of the fastest vibration, which leaves a quarter of the stable step.
     void add_damping(double wanted);
 
     const Elasticity& elasticity() const { return elasticity_; }

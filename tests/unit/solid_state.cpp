@@ -141,10 +141,10 @@ TEST(SolidExchange, VibrationsFasterThanAWindowAreDampedByTheImpedance) {
     EXPECT_DOUBLE_EQ(mechanics.stiffness_damping(), damping);
     const double rate = damping * frequency * frequency;
     EXPECT_NEAR(std::log(undamped / energy()) / time, rate, 0.03 * rate);
-    // Never more than half of the critical damping of the fastest vibration.
+    // Never more than twice the critical damping of the fastest vibration.
     const double step = solid.bodies()[0].stable_step();
     solid.advance(window, force, heat, 1e6);
-    EXPECT_GT(solid.bodies()[0].stable_step(), 0.6 * step);
+    EXPECT_GT(solid.bodies()[0].stable_step(), 0.23 * step);
 }
 
 TEST(SolidExchange, LimitsOfTheWindow) {
