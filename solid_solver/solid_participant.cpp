@@ -96,6 +96,7 @@ void Participant::advance(const protocol::Window& window,
             window.length, load.force, load.heat_flow, impedance_of(scene_.coupling(), load));
     }));
     time_ = window.time + window.length;
+    impedance_ = load.impedance;
     fill(end);
     report.set_stable_step(longest_window());
     fill(*report.mutable_ledger());
@@ -131,7 +132,8 @@ void Participant::finish() {
 double Participant::longest_window() const {
     const v1::Fluid& fluid = scene_.fluid();
     const double heat = solid_->exchange_limit(fluid.conductivity(), fluid.spacing());
-    const double mass = solid_->added_mass_limit(fluid.density(), fluid.sound_speed());
+    const double sound = fluid.density() * fluid.sound_speed();
+    const double mass = solid_->added_mass_limit(1, std::max(sound, impedance_));
     const double drag =
         solid_->drag_limit(fluid.density() * fluid.kinematic_viscosity(), fluid.spacing());
     double longest = 0;

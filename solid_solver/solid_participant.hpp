@@ -39,6 +39,7 @@ class Participant : public protocol::SolidSolver {
     Probes probes_;
     std::optional<snapshot::Series> series_;
     double time_ = 0;
+    double impedance_ = 0; ///< Pa s/m, of the fluid, as the last load told it
 };
 
 } // namespace duet::solid
