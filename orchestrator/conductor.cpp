@@ -317,7 +317,7 @@ void Conductor::process_ended(Player& player) {
     player.ending = player.process->poll();
     std::optional<Failure> word; // the other side's, about this end: the end itself says more
     try {
-        if (player.ending && player.ending->good)
+        if (player.ending)
             read_last_words(player);
     } catch (const Failure& other) {
         if (other.direct())
@@ -337,7 +337,7 @@ void Conductor::process_ended(Player& player) {
     throw Failure(name_of(player), player.now(), what);
 }
 
-/// An orderly end may overtake the last words on the socket, among them its Bye: reads on to them.
+/// An end may overtake the last words on the socket, its Bye or its Failed: reads on to them.
 void Conductor::read_last_words(const Player& player) {
     const Clock::time_point deadline = Clock::now() + std::chrono::seconds(1);
     while (!player.solver.empty() && !player.gone && !player.bye && !player.failed) {
