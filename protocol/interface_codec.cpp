@@ -90,6 +90,14 @@ void check_scalar(const Subject& subject, const char* field, double value) {
         subject.refuse_number(field, value);
 }
 
+/// A negative one would ask the solid to feed its vibrations.
+void check_impedance(const Subject& subject, double value) {
+    check_scalar(subject, "impedance", value);
+    if (value < 0)
+        subject.refuse("impedance is " + std::to_string(value)
+                       + " Pa s/m where no negative number can stand");
+}
+
 /// Every node belongs to one place of one chain.
 InterfaceSize
 check_chains(const Subject& subject, const std::vector<Chain>& chains, std::size_t nodes) {
@@ -260,7 +268,7 @@ void encode(const Stamp& stamp,
     check_scalar(subject, "impulse_x", load.impulse_x);
     check_scalar(subject, "impulse_y", load.impulse_y);
     check_scalar(subject, "heat", load.heat);
-    check_scalar(subject, "impedance", load.impedance);
+    check_impedance(subject, load.impedance);
     v1::InterfaceLoad& out = *message.mutable_load();
     out.set_run_id(stamp.run_id);
     out.set_window(stamp.window.index);
@@ -292,9 +300,9 @@ void decode(const v1::ToPeer& message,
     take(subject, "heat_flow", in.heat_flow(), size.segments, 1, load.heat_flow);
     for (const auto& [field, value] : {std::pair{"impulse_x", in.impulse_x()},
                                        std::pair{"impulse_y", in.impulse_y()},
-                                       std::pair{"heat", in.heat()},
-                                       std::pair{"impedance", in.impedance()}})
+                                       std::pair{"heat", in.heat()}})
         check_scalar(subject, field, value);
+    check_impedance(subject, in.impedance());
     load.impulse_x = in.impulse_x();
     load.impulse_y = in.impulse_y();
     load.heat = in.heat();

@@ -292,8 +292,8 @@ EnergyAccount Body::energy() const {
         out.supports = mechanics_->support_work();
         out.expansion = mechanics_->elasticity().expansion_work();
         out.steps = work.steps;
-        out.dissipated = work.mass_damping;
-        if (mechanics_->stiffness_damping() > 0 || choice_ == 2) {
+        out.dissipated = work.mass_damping + mechanics_->elasticity().damping_loss();
+        if (choice_ == 2) {
             out.dissipated -= out.residual();
         }
     }

@@ -25,8 +25,8 @@ struct EnergyAccount {
     double dissipated = 0; ///< by damping, and by implicit steps
     double steps = 0;      ///< of explicit steps, see Work
     double stored = 0;     ///< change of kinetic and strain energy
-    /// What the stored energy has beyond all that came in. With stiffness damping or implicit steps
-    /// the dissipated energy is what is left over, and this is zero.
+    /// What the stored energy has beyond all that came in. With implicit steps the dissipated
+    /// energy is what is left over, and this is zero.
     double residual() const {
         return stored - (interface + loads + supports + expansion + steps - dissipated);
     }

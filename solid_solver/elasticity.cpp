@@ -81,6 +81,8 @@ Elasticity::Elasticity(const BodyConfig& body, const Domains& domains)
         warming_.assign(count, 0.0);
         expansion_work_.assign(count, 0.0);
     }
+    damping_stress_.assign(3 * count, 0.0);
+    damping_loss_.assign(count, 0.0);
     contribution_.resize(2 * slots * count);
     heat_share_.resize(slots * count);
     heating_.resize(nodes);
@@ -92,6 +94,7 @@ void Elasticity::reset(std::span<const double> displacement,
                        std::span<double> force) {
     std::fill(displacement_.begin(), displacement_.end(), 0.0);
     std::fill(stress_.begin(), stress_.end(), 0.0);
+    std::fill(damping_stress_.begin(), damping_stress_.end(), 0.0);
     std::fill(out_of_plane_.begin(), out_of_plane_.end(), 0.0);
     std::fill(domain_temperature_.begin(), domain_temperature_.end(), reference_temperature_);
     forces(displacement, 0, temperature, force);
@@ -154,19 +157,24 @@ void Elasticity::forces(std::span<const double> displacement,
         std::copy(displacement.begin(), displacement.end(), displacement_.begin());
         const double per_step = dt > 0 ? damping_ / dt : 0;
         const bool expands = !trace_.empty();
-        total_forces(
-            temperature, expands, [&](std::size_t k, const Gradient&, const PlaneTensor& s) {
-                const double* old = &stress_[3 * k];
-                return PlaneTensor{per_step * (s.xx - old[0]),
-                                   per_step * (s.yy - old[1]),
-                                   per_step * (s.xy - old[2]),
-                                   0};
-            });
+        total_forces(temperature,
+                     expands,
+                     [&](std::size_t k, const Gradient&, const PlaneTensor& s, double warming) {
+                         if (per_step == 0) {
+                             return PlaneTensor{};
+                         }
+                         const double* old = &stress_[3 * k];
+                         const double xx = s.xx - old[0], yy = s.yy - old[1], xy = s.xy - old[2];
+                         const PlaneTensor d{per_step * xx, per_step * yy, per_step * xy, 0};
+                         const double warmer = expands ? warming - warming_[k] : 0;
+                         book_damping(k, d, law(k).strain(xx, yy, xy, warmer), domains_.area[k]);
+                         return d;
+                     });
     }
     gather(contribution_, force.data(), 2);
 }
 
-/// P = F (S + b dS/dt); the second part, damping(k, g, S), may read the S before.
+/// P = F (S + b dS/dt); the second part, damping(k, g, S, T - T0), may read the S before.
 template <class Damping>
 void Elasticity::total_forces(std::span<const double> temperature,
                               bool book,
@@ -177,7 +185,7 @@ void Elasticity::total_forces(std::span<const double> temperature,
             const auto e = green_strain(g);
             const double warming = mean(k, temperature.data()) - reference_temperature_;
             const PlaneTensor s = law(k).stress(e[0], e[1], e[2], warming);
-            const PlaneTensor d = damping(k, g, s);
+            const PlaneTensor d = damping(k, g, s, warming);
             put_force(k, g, s.xx + d.xx, s.yy + d.yy, s.xy + d.xy);
             stress_[3 * k] = s.xx;
             stress_[3 * k + 1] = s.yy;
@@ -196,9 +204,29 @@ void Elasticity::book_expansion(std::size_t k, double trace, double warming, dou
     warming_[k] = warming;
 }
 
+/// The damping stress of the step before did its work in the first half of this one, the new one
+/// does in the second.
+void Elasticity::book_damping(std::size_t k,
+                              const PlaneTensor& stress,
+                              const std::array<double, 3>& strain,
+                              double measure) {
+    double* old = &damping_stress_[3 * k];
+    damping_loss_[k] += 0.5 * measure
+                        * ((old[0] + stress.xx) * strain[0] + (old[1] + stress.yy) * strain[1]
+                           + 2 * (old[2] + stress.xy) * strain[2]);
+    old[0] = stress.xx;
+    old[1] = stress.yy;
+    old[2] = stress.xy;
+}
+
 void Elasticity::settle(std::span<const double> displacement) {
     latent_heat(displacement, latent_);
     std::fill(expansion_work_.begin(), expansion_work_.end(), 0.0);
+    std::fill(damping_loss_.begin(), damping_loss_.end(), 0.0);
+}
+
+double Elasticity::damping_loss() const {
+    return std::accumulate(damping_loss_.begin(), damping_loss_.end(), 0.0);
 }
 
 double Elasticity::expansion_work() const {
@@ -211,14 +239,15 @@ void Elasticity::evaluate(std::span<const double> displacement,
                           std::span<const double> warming,
                           std::span<double> force) {
     std::copy(displacement.begin(), displacement.end(), displacement_.begin());
-    total_forces(temperature, false, [&](std::size_t k, const Gradient& g, const PlaneTensor&) {
-        if (damping_ == 0) {
-            return PlaneTensor{};
-        }
-        const auto d = strain_change(g, gradient(k, velocity.data()));
-        const PlaneTensor rate = law(k).stress(d[0], d[1], d[2], mean(k, warming.data()));
-        return PlaneTensor{damping_ * rate.xx, damping_ * rate.yy, damping_ * rate.xy, 0};
-    });
+    total_forces(
+        temperature, false, [&](std::size_t k, const Gradient& g, const PlaneTensor&, double) {
+            if (damping_ == 0) {
+                return PlaneTensor{};
+            }
+            const auto d = strain_change(g, gradient(k, velocity.data()));
+            const PlaneTensor rate = law(k).stress(d[0], d[1], d[2], mean(k, warming.data()));
+            return PlaneTensor{damping_ * rate.xx, damping_ * rate.yy, damping_ * rate.xy, 0};
+        });
     gather(contribution_, force.data(), 2);
 }
 

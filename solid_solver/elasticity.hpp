@@ -98,6 +98,9 @@ class Elasticity {
     /// J/m since the last reset or settle: sum over the steps of beta (T - T0) d tr(E),
     /// what the body has worked against its stiffness and its loads by expanding while warm.
     double expansion_work() const;
+    /// J/m, likewise in explicit steps: sum over the steps of A (b dS/dt) : dE (63), the damping
+    /// stress as the mean of its values at both ends of the step.
+    double damping_loss() const;
     /// Forgets what the way to `displacement` would have heated and has worked.
     void settle(std::span<const double> displacement);
     /// Cauchy stress in domain k.
@@ -117,6 +120,8 @@ class Elasticity {
         visit(trace_);
         visit(warming_);
         visit(expansion_work_);
+        visit(damping_stress_);
+        visit(damping_loss_);
     }
 
   private:
@@ -130,6 +135,10 @@ class Elasticity {
     template <class Damping>
     void total_forces(std::span<const double> temperature, bool book, const Damping& damping);
     void book_expansion(std::size_t domain, double trace, double warming, double measure);
+    void book_damping(std::size_t domain,
+                      const PlaneTensor& stress,
+                      const std::array<double, 3>& strain,
+                      double measure);
     void updated_forces(double dt, const double* before, std::span<const double> temperature);
     Shape present_shape(std::size_t domain, const double* displacement) const;
     Shape middle_shape(std::size_t domain, const double* before, const double* after) const;
@@ -155,6 +164,8 @@ class Elasticity {
     /// [K], or empty where no warming expands the body: tr(E) (total Lagrangian) and T - T0 of the
     /// last forces, and the expansion work J/m.
     std::vector<double> trace_, warming_, expansion_work_;
+    std::vector<double> damping_stress_; ///< [K][3] b dS/dt of the last forces
+    std::vector<double> damping_loss_;   ///< [K] J/m
 
     std::vector<double> before_;       ///< [N][2] work space
     std::vector<double> contribution_; ///< [K][slots][2]

@@ -4,6 +4,8 @@
 
 #include "solid_solver/body_config.hpp"
 
+#include <array>
+
 namespace duet::solid {
 
 /// A symmetric tensor of the plane, e.g. a stress: xx, yy, xy, and zz out of the plane.
@@ -44,6 +46,14 @@ struct Law {
     PlaneTensor stress(double xx, double yy, double xy, double warming) const {
         const double mean = lambda * (xx + yy) - beta * warming;
         return {mean + 2 * mu * xx, mean + 2 * mu * yy, 2 * mu * xy, plane_stress ? 0 : mean};
+    }
+    /// The strain (xx, yy, xy) of a stress and a warming.
+    std::array<double, 3> strain(double xx, double yy, double xy, double warming) const {
+        const double thermal = beta * warming;
+        const double trace = (xx + yy + 2 * thermal) / (2 * (lambda + mu));
+        return {(xx + thermal - lambda * trace) / (2 * mu),
+                (yy + thermal - lambda * trace) / (2 * mu),
+                xy / (2 * mu)};
     }
     /// E_zz; zero in plane strain.
     double thickening(double trace, double warming) const {

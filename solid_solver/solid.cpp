@@ -35,7 +35,7 @@ Solid::Solid(std::vector<BodyConfig> bodies, const std::vector<Point>& region) {
 /// period between one and two windows that answer has the wrong sign: it feeds its energy by up to
 /// 0.5 Z S/M (S the body's wet length, M its mass). A stiffness damping b takes b w^2, w >= pi over
 /// the window. This b is pi^2 times what balances the two where the whole body swings, for surfaces
-/// swing more.
+/// swing more (docs/theory-coupling.md).
 void Solid::damp_exchange(double length, double impedance) {
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
         bodies_[b].set_exchange_damping(0.5 * impedance * wet_length_[b] / bodies_[b].mass()
@@ -134,14 +134,23 @@ double Solid::least_over_segments(const Limit& limit) const {
     return least;
 }
 
+namespace {
+
+/// The smaller of a limit, 0 being none, and the inverse of a rate.
+double smaller_limit(double limit, double rate) {
+    return rate <= 0 ? limit : limit > 0 ? std::min(limit, 1 / rate) : 1 / rate;
+}
+
 /// The smallest density of a body's materials, kg/m3.
-static double lightest(const BodyConfig& body) {
+double lightest(const BodyConfig& body) {
     double least = std::numeric_limits<double>::infinity();
     for (const Material& material : body.materials()) {
         least = std::min(least, material.density);
     }
     return least;
 }
+
+} // namespace
 
 double Solid::exchange_limit(double conductivity, double spacing) const {
     if (conductivity <= 0) {
@@ -169,11 +178,10 @@ double Solid::added_mass_limit(double fluid_density, double sound_speed) const {
         const bool moves = body.motion == Motion::deformable;
         return moves ? lightest(body) * edge / impedance : 0;
     });
-    const double rate = impedance * rigid_answer();
-    return rate > 0 ? std::min(1 / rate, layers > 0 ? layers : 1 / rate) : layers;
+    return smaller_limit(layers, rigid_rate(impedance, 0));
 }
 
-double Solid::rigid_answer() const {
+double Solid::rigid_rate(double across, double along_it) const {
     std::vector<Eigen::Matrix3d> sum(bodies_.size(), Eigen::Matrix3d::Zero());
     for (const Interface::Segment& segment : interface_.segment) {
         const Interface::Node &a = interface_.node[segment.a], &b = interface_.node[segment.b];
@@ -184,10 +192,13 @@ double Solid::rigid_answer() const {
         const auto x = body.position();
         const Point from(x[2 * a.node], x[2 * a.node + 1]), to(x[2 * b.node], x[2 * b.node + 1]);
         const Point along = to - from, arm = 0.5 * (from + to) - body.rigid()->centre();
-        const Eigen::Vector3d mass = body.rigid()->inverse_mass();
-        const Eigen::Vector3d g = mass.cwiseSqrt().cwiseProduct(
-            Eigen::Vector3d(along.y(), -along.x(), -arm.dot(along))); // times the edge's length
-        sum[a.body] += g * g.transpose() / along.norm();
+        // Times the edge's length: the normal and the tangent, with their arms.
+        const Eigen::Vector3d mass = body.rigid()->inverse_mass().cwiseSqrt();
+        const Eigen::Vector3d n =
+            mass.cwiseProduct(Eigen::Vector3d(along.y(), -along.x(), -arm.dot(along)));
+        const Eigen::Vector3d t = mass.cwiseProduct(
+            Eigen::Vector3d(along.x(), along.y(), arm.x() * along.y() - arm.y() * along.x()));
+        sum[a.body] += (across * n * n.transpose() + along_it * t * t.transpose()) / along.norm();
     }
     double largest = 0;
     for (const Eigen::Matrix3d& one : sum) {
@@ -204,10 +215,11 @@ double Solid::drag_limit(double viscosity, double spacing) const {
     if (viscosity <= 0) {
         return 0;
     }
-    return least_over_segments([&](const BodyConfig& body, double edge) {
-        const double layer = lightest(body) * edge / 2;
-        return body.motion == Motion::deformable ? 0.5 * layer * (spacing / 2) / viscosity : 0;
+    const double drag = 2 * viscosity / (spacing / 2);
+    const double layers = least_over_segments([&](const BodyConfig& body, double edge) {
+        return body.motion == Motion::deformable ? lightest(body) * edge / 2 / drag : 0;
     });
+    return smaller_limit(layers, rigid_rate(0, drag));
 }
 
 } // namespace duet::solid

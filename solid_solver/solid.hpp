@@ -83,9 +83,10 @@ class Solid {
   private:
     template <class Limit>
     double least_over_segments(const Limit& limit) const;
-    /// The largest of lambda_max of sum ds M^-1 g g^T over the rigid bodies, m2/kg; see
-    /// added_mass_limit.
-    double rigid_answer() const;
+    /// 1/s: how fast a wall that answers its velocity by `across` Pa s/m against the normal and by
+    /// `along_it` along itself stops a rigid body at most, lambda_max of sum ds M^-1 (across n n^T
+    /// + along_it t t^T) over its three motions; see added_mass_limit and drag_limit.
+    double rigid_rate(double across, double along_it) const;
     void damp_exchange(double length, double impedance);
     void set_loads(std::span<const double> force, std::span<const double> heat_flow);
     void book(double length, std::span<const double> force, std::span<const double> heat_flow);

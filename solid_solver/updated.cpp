@@ -112,6 +112,12 @@ void Elasticity::updated_forces(double dt,
             const double pxx = weight * (stress[0] + per_step * added.xx);
             const double pyy = weight * (stress[1] + per_step * added.yy);
             const double pxy = weight * (stress[2] + per_step * added.xy);
+            if (per_step > 0) {
+                book_damping(k,
+                             {per_step * added.xx, per_step * added.yy, per_step * added.xy, 0},
+                             {l.xx, l.yy, 0.5 * (l.xy + l.yx)},
+                             weight);
+            }
             if (!warming_.empty()) {
                 book_expansion(k, l.xx + l.yy, now - reference_temperature_, weight);
             }

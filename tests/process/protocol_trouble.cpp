@@ -179,6 +179,11 @@ TEST_P(Participant, RefusesALoadThatIsNotANumber) {
         {"fluid", "window 0", "force[2].y", "nan"});
 }
 
+TEST_P(Participant, RefusesALoadOfNegativeImpedance) {
+    const auto negative = [](v1::ToPeer& m) { m.mutable_load()->set_impedance(-1.5); };
+    expect_load_refused(GetParam(), negative, {"fluid", "window 0", "impedance is -1.5"});
+}
+
 TEST_P(Participant, RefusesALoadOfTheWrongLength) {
     const auto shorten = [](v1::ToPeer& m) { m.mutable_load()->mutable_heat_flow()->resize(100); };
     expect_load_refused(GetParam(), shorten, {"fluid", "heat_flow", "100 bytes", "240"});

@@ -178,6 +178,14 @@ TEST(SolidRigid, AnswersTheFluidAsAWhole) {
     const double half = 30 * 2 * std::sin(std::numbers::pi / 60);
     const double mass = 2 * mesh_area(config.mesh);
     EXPECT_NEAR(Solid({config}, cavity).added_mass_limit(1.5, 20), mass / (1.5 * 20 * half), 1e-12);
+    // The shear along its rim turns it: D r^2 on 2 pi r, r the chords' distance from the centre.
+    const double drag = 2 * 0.7 / (0.2 / 2), perimeter = 2 * half;
+    const double apothem = std::cos(std::numbers::pi / 60);
+    const double spin = drag * perimeter * apothem * apothem / Rigid(config).inertia();
+    EXPECT_GT(spin, drag * half / mass); // more than what slows it down
+    EXPECT_NEAR(Solid({config}, cavity).drag_limit(0.7, 0.2), 1 / spin, 1e-12);
+    config.support.fixed_angle = true;
+    EXPECT_NEAR(Solid({config}, cavity).drag_limit(0.7, 0.2), mass / (drag * half), 1e-12);
     // A square about its corner: sum of the arms' squares 2/3.
     config = block();
     config.support.pivot = Point(0, 0);

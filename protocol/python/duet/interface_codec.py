@@ -170,6 +170,8 @@ def _check_totals(subject, load):
     for field in ("impulse_x", "impulse_y", "heat", "impedance"):
         if not math.isfinite(getattr(load, field)):
             subject.refuse_number(field, getattr(load, field))
+    if load.impedance < 0:
+        subject.refuse(f"impedance is {load.impedance} Pa s/m where no negative number can stand")
 
 
 def _put(subject, field, values, shape):
