@@ -231,7 +231,7 @@ TEST_F(SolidParticipant, ProbesOfABoundaryTakeItsReactionAndItsHeat) {
     const double stored = report.ledger().strain_energy();
     EXPECT_NEAR(of("work"), 2 * stored, 1e-2 * stored); // strains of 2e-3
     EXPECT_NEAR(of("lost"), stored, 1e-2 * stored);
-    EXPECT_NEAR(of("wrong"), 0, 1e-18);
+    EXPECT_NEAR(of("wrong"), 0, 1e-5 * stored); // of second order in the step: 1e-6 measured
     EXPECT_EQ(report.ledger().figure().at("dissipated"), of("lost"));
     add_probe("other", "heat_flow").set_boundary("roof");
     EXPECT_NE(refusal().find("which no body has"), std::string::npos);
