@@ -272,15 +272,28 @@ bool overlap(const v1::Rectangle& a, const v1::Rectangle& b, double tolerance) {
     return x > tolerance && y > tolerance;
 }
 
-double
-common_length(const Point& a, const Point& b, const Point& c, const Point& d, double tolerance) {
+std::optional<Piece>
+common_piece(const Point& a, const Point& b, const Point& c, const Point& d, double tolerance) {
     const double length = distance(a, b);
     if (length <= tolerance || distance_to_line(c, a, b) > tolerance
         || distance_to_line(d, a, b) > tolerance)
-        return 0;
-    const double from = dot(a, b, c) / length;
-    const double to = dot(a, b, d) / length;
-    return std::max(0.0, std::min(length, std::max(from, to)) - std::max(0.0, std::min(from, to)));
+        return std::nullopt;
+    const double at_c = dot(a, b, c) / length;
+    const double at_d = dot(a, b, d) / length;
+    const double from = std::max(0.0, std::min(at_c, at_d)) / length;
+    const double to = std::min(length, std::max(at_c, at_d)) / length;
+    if (to <= from)
+        return std::nullopt;
+    const auto at = [&](double s) {
+        return point(a.x() + s * (b.x() - a.x()), a.y() + s * (b.y() - a.y()));
+    };
+    return Piece{at(from), at(to)};
+}
+
+double
+common_length(const Point& a, const Point& b, const Point& c, const Point& d, double tolerance) {
+    const auto piece = common_piece(a, b, c, d, tolerance);
+    return piece ? distance(piece->first, piece->second) : 0;
 }
 
 } // namespace duet::orchestrator

@@ -14,6 +14,7 @@ namespace duet::orchestrator {
 
 using Point = v1::Vector;
 using Polygon = std::vector<Point>;
+using Piece = std::pair<Point, Point>; ///< straight, from the first to the second
 
 Point point(double x, double y);
 double distance(const Point& a, const Point& b);
@@ -69,7 +70,11 @@ bool strictly_inside(const v1::Rectangle& rectangle, const Point& p, double tole
 /// The point lies on the straight piece from a to b.
 bool on_piece(const Point& p, const Point& a, const Point& b, double tolerance);
 
-/// Length of the part of the piece c-d that lies on the piece a-b; 0 if they are not on one line.
+/// The part of the piece c-d that lies on the piece a-b, along a-b; none if they are not on one
+/// line, or apart.
+std::optional<Piece>
+common_piece(const Point& a, const Point& b, const Point& c, const Point& d, double tolerance);
+/// Its length; 0 without one.
 double
 common_length(const Point& a, const Point& b, const Point& c, const Point& d, double tolerance);
 

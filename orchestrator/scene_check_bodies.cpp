@@ -12,6 +12,12 @@ namespace duet::orchestrator {
 
 using protocol::is_zero;
 
+bool tells_motion(const v1::Boundary& boundary, bool along_x) {
+    return along_x
+               ? boundary.fixed_x() || boundary.has_displacement_x() || boundary.has_velocity_x()
+               : boundary.fixed_y() || boundary.has_displacement_y() || boundary.has_velocity_y();
+}
+
 void Checker::check_bodies() {
     const auto& bodies = scene_.solid().body();
     check_names("solid.body", bodies);
@@ -52,6 +58,7 @@ void Checker::check_body(const v1::Body& body, const std::string& path) {
     if (body.motion() == v1::Body::DEFORMABLE && !body.has_youngs_modulus())
         problem(path, "the deformable body '" + body.name() + "' lacks the key 'youngs_modulus'");
     check_size(nodes_of(body), "nodes of the body '" + body.name() + "'", path + ".element_size");
+    check_leaning(body, path);
     check_point_loads(body, path);
     check_names(path + ".boundary", body.boundary());
     for (int i = 0; i < body.boundary_size(); ++i)
@@ -185,13 +192,9 @@ void Checker::check_boundary(const v1::Boundary& boundary,
             break;
         if (boundary.curve().empty() || other.curve() != boundary.curve())
             continue;
-        const auto moved = [](const v1::Boundary& b, bool x) {
-            return x ? b.fixed_x() || b.has_displacement_x() || b.has_velocity_x()
-                     : b.fixed_y() || b.has_displacement_y() || b.has_velocity_y();
-        };
         if ((boundary.has_temperature() && other.has_temperature())
-            || (moved(boundary, true) && moved(other, true))
-            || (moved(boundary, false) && moved(other, false)))
+            || (tells_motion(boundary, true) && tells_motion(other, true))
+            || (tells_motion(boundary, false) && tells_motion(other, false)))
             problem(path,
                     "the boundaries '" + other.name() + "' and '" + boundary.name()
                         + "' prescribe the same on the curve '" + boundary.curve()

@@ -27,6 +27,9 @@ double latest(const v1::Scene& scene);
 /// True if the end of the run was given on the command line.
 bool shortened(const Case& given);
 
+/// The boundary tells the motion along x, or along y.
+bool tells_motion(const v1::Boundary& boundary, bool along_x);
+
 class Checker {
   public:
     explicit Checker(const Case& given);
@@ -59,6 +62,7 @@ class Checker {
     check_boundary(const v1::Boundary& boundary, const v1::Body& body, const std::string& path);
     void
     check_conditions(const v1::Boundary& boundary, const v1::Body& body, const std::string& path);
+    void check_leaning(const v1::Body& body, const std::string& path);
 
     void check_probe(const v1::Probe& probe, const std::string& path);
     void check_probed_boundary(const v1::Probe& probe, const std::string& path);
