@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <sstream>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -13,12 +13,26 @@ namespace duet::fluid {
 
 namespace {
 
+/// The words between commas, without the quotes and the space round them; a comma at the end opens
+/// no further word.
 std::vector<std::string> split(const std::string& line) {
-    std::vector<std::string> words;
-    std::istringstream in(line);
-    for (std::string word; std::getline(in, word, ',');) {
+    std::vector<std::string> words(1);
+    bool quoted = false;
+    for (const char c : line) {
+        if (c == '"') {
+            quoted = !quoted;
+        } else if (c == ',' && !quoted) {
+            words.emplace_back();
+        } else {
+            words.back() += c;
+        }
+    }
+    for (std::string& word : words) {
         const auto first = word.find_first_not_of(" \t\r"), last = word.find_last_not_of(" \t\r");
-        words.push_back(first == std::string::npos ? "" : word.substr(first, last - first + 1));
+        word = first == std::string::npos ? "" : word.substr(first, last - first + 1);
+    }
+    if (words.back().empty()) {
+        words.pop_back();
     }
     return words;
 }
@@ -41,11 +55,14 @@ double number(const std::string& word, const std::string& where) {
 
 ScatteredState::ScatteredState(const std::filesystem::path& file) {
     read(file);
-    sort();
+    sort(file);
 }
 
 void ScatteredState::read(const std::filesystem::path& file) {
     std::ifstream in(file);
+    if (!in) {
+        throw std::invalid_argument(file.string() + ": the file cannot be opened");
+    }
     std::vector<std::string> names;
     std::size_t x = 0, y = 0;
     std::array<std::size_t, 3> of{};
@@ -53,10 +70,13 @@ void ScatteredState::read(const std::filesystem::path& file) {
     for (std::string line; std::getline(in, line);) {
         ++line_number;
         const std::string where = file.string() + ", line " + std::to_string(line_number);
-        if (line.empty() || line[0] == '#') {
-            continue;
+        if (line_number == 1 && line.starts_with("\xEF\xBB\xBF")) { // a mark that says UTF-8
+            line.erase(0, 3);
         }
         const std::vector<std::string> words = split(line);
+        if (words.empty() || line[0] == '#') {
+            continue;
+        }
         if (names.empty()) {
             names = words;
             const auto place = [&](const std::string& name) {
@@ -85,12 +105,16 @@ void ScatteredState::read(const std::filesystem::path& file) {
             }
         }
     }
+    if (names.empty()) {
+        throw std::invalid_argument(file.string()
+                                    + ": the file is empty; its first line names the columns");
+    }
     if (points_.size() < 3) {
         throw std::invalid_argument(file.string() + ": a state needs at least three points");
     }
 }
 
-void ScatteredState::sort() {
+void ScatteredState::sort(const std::filesystem::path& file) {
     lower_ = points_[0];
     Vec2 upper = lower_;
     for (const Vec2 p : points_) {
@@ -102,7 +126,7 @@ void ScatteredState::sort() {
     cell_ = std::max(1.5 * std::sqrt(size.x * size.y / count),
                      1.5 * std::max(size.x, size.y) / count); // all on one line
     if (!(cell_ > 0)) {
-        throw std::invalid_argument("the points of a state lie all at one place");
+        throw std::invalid_argument(file.string() + ": the points lie all at one place");
     }
     columns_ = static_cast<int>(size.x / cell_) + 1;
     rows_ = static_cast<int>(size.y / cell_) + 1;
@@ -131,6 +155,16 @@ int ScatteredState::row(double y) const {
     return std::clamp(static_cast<int>(std::floor((y - lower_.y) / cell_)), 0, rows_ - 1);
 }
 
+double ScatteredState::nearest(Field field, Vec2 x) const {
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < points_.size(); ++i) {
+        if (norm(points_[i] - x) < norm(points_[best] - x)) {
+            best = i;
+        }
+    }
+    return values_[field][best];
+}
+
 double ScatteredState::at(Field field, Vec2 x) const {
     // Rings of cells are added until a plane is settled; on a lattice the first nine cells do.
     const int last = std::max(columns_, rows_);
@@ -138,6 +172,7 @@ double ScatteredState::at(Field field, Vec2 x) const {
         Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
         Eigen::Vector3d right = Eigen::Vector3d::Zero();
         double weight = 0, mean = 0;
+        double least = std::numeric_limits<double>::infinity(), most = -least;
         for (int j = std::max(0, row(x.y) - reach); j <= std::min(rows_ - 1, row(x.y) + reach);
              ++j) {
             for (int i = std::max(0, column(x.x) - reach);
@@ -153,15 +188,17 @@ double ScatteredState::at(Field field, Vec2 x) const {
                     right += w * f * plane;
                     weight += w;
                     mean += w * f;
+                    least = std::min(least, f);
+                    most = std::max(most, f);
                 }
             }
         }
         const Eigen::LDLT<Eigen::Matrix3d> factor(normal);
         if (weight > 0 && factor.rcond() > 1e-4) {
-            return factor.solve(right)[0];
+            return std::clamp(factor.solve(right)[0], least, most);
         }
-        if (reach >= last) { // all points on one line
-            return mean / weight;
+        if (reach >= last) { // all points on one line, or so far away that their weights vanish
+            return weight > 0 ? std::clamp(mean / weight, least, most) : nearest(field, x);
         }
     }
 }

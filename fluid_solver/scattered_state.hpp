@@ -16,20 +16,22 @@ class ScatteredState {
   public:
     enum Field { temperature, velocity_x, velocity_y }; ///< K, m/s, m/s
 
-    /// A CSV file whose first line that is no comment (#) names its columns: x and y (m), and any
-    /// of the fields by their names above; other columns are left out. Throws std::invalid_argument
-    /// with file, line, and what was expected.
+    /// A CSV file whose first line that is no comment (#) names its columns, in quotes or not: x
+    /// and y (m), and any of the fields by their names above; other columns are left out. Throws
+    /// std::invalid_argument with file, line, and what was expected.
     explicit ScatteredState(const std::filesystem::path& file);
 
     bool has(Field field) const { return !values_[field].empty(); }
 
-    /// At x: a plane through the points about it by weighted least squares, exact for linear
-    /// fields.
+    /// At x: a plane through the points about it by weighted least squares, exact for linear fields
+    /// between their values, which it does not leave; the value of the nearest point if none is
+    /// about it.
     double at(Field field, Vec2 x) const;
 
   private:
     void read(const std::filesystem::path& file);
-    void sort();
+    void sort(const std::filesystem::path& file);
+    double nearest(Field field, Vec2 x) const;
     int column(double x) const;
     int row(double y) const;
 

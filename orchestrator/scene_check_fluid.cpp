@@ -2,16 +2,19 @@
 
 #include "orchestrator/scene_checker.hpp"
 
+#include "fluid_solver/scattered_state.hpp"
 #include "protocol/function.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace duet::orchestrator {
 
 using protocol::is_zero;
 
 void Checker::check_fluid() {
+    check_initial_state();
     const std::string path = "fluid.region";
     if (scene_.fluid().has_disc() == (scene_.fluid().region_size() > 0))
         return problem("fluid",
@@ -30,6 +33,18 @@ void Checker::check_fluid() {
     check_names("fluid.wall", scene_.fluid().wall());
     for (int i = 0; i < scene_.fluid().wall_size(); ++i)
         check_wall(scene_.fluid().wall(i), entry("fluid.wall", i));
+}
+
+/// The fluid will be able to read it.
+void Checker::check_initial_state() {
+    const std::string& file = scene_.fluid().initial_state();
+    if (file.empty())
+        return;
+    try {
+        fluid::ScatteredState{file};
+    } catch (const std::invalid_argument& error) {
+        problem("fluid.initial_state", error.what());
+    }
 }
 
 void Checker::check_hole(const v1::Hole& hole, const std::string& path) {

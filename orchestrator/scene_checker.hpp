@@ -44,6 +44,7 @@ class Checker {
     void steady_in_place(const v1::Function& function, const std::string& path);
 
     void check_fluid();
+    void check_initial_state();
     void check_hole(const v1::Hole& hole, const std::string& path);
     void check_wall(const v1::Wall& wall, const std::string& path);
     Polygon outline_of(const std::string& around) const;

@@ -4,9 +4,9 @@ duet_test(fluid_unit LABEL unit
         unit/fluid_state.cpp unit/fluid_twins.cpp
     LIBRARIES duet_fluid_core)
 
-duet_test(fluid_participant_unit LABEL unit
+duet_test(fluid_scattered_unit LABEL unit
     SOURCES unit/fluid_scattered_state.cpp
-    LIBRARIES duet_fluid_participant)
+    LIBRARIES duet_scattered)
 
 duet_test(fluid_verification LABEL verification
     SOURCES verification/fluid_slab.cpp verification/fluid_two_layers.cpp verification/fluid_cavity.cpp

@@ -66,11 +66,39 @@ TEST(FluidScatteredState, CurvedFieldsFollowThePoints) {
     EXPECT_LT(fine, coarse / 6);
 }
 
+TEST(FluidScatteredState, FarAwayTheNearestPointCounts) {
+    // The weights of all points vanish there, in a square as on a line.
+    for (const std::string points : {"0,0,1\n1,0,2\n0,1,3\n1,1,4\n", "0,0,1\n1,0,2\n2,0,2\n"}) {
+        const File file("x,y,temperature\n" + points);
+        const ScatteredState state(file.path);
+        EXPECT_EQ(state.at(ScatteredState::temperature, {-100, -100}), 1);
+        EXPECT_EQ(state.at(ScatteredState::temperature, {100, -100}), 2);
+    }
+}
+
+TEST(FluidScatteredState, NoValueLeavesThoseOfThePointsAboutIt) {
+    // A step: the plane through it overshoots on both sides, and runs away beyond the points.
+    const File file(scattered(400, [](double x, double) { return x < 0.9 ? 0.0 : 1.0; }));
+    const ScatteredState state(file.path);
+    for (double x = -0.5; x < 1.5; x += 0.01) {
+        const double T = state.at(ScatteredState::temperature, {x, 0.5});
+        EXPECT_GE(T, 0) << x;
+        EXPECT_LE(T, 1) << x;
+    }
+}
+
+TEST(FluidScatteredState, SpreadsheetsAreRead) {
+    const File file("\xEF\xBB\xBF\"x\",\"y\",\"a, b\",\"temperature\"\r\n0,0,7,1\r\n\r\n1,0,7,1\r\n"
+                    "0,1,7,1,\r\n");
+    const ScatteredState state(file.path);
+    EXPECT_EQ(state.at(ScatteredState::temperature, {0.5, 0.5}), 1);
+}
+
 TEST(FluidScatteredState, FaultsAreSaidWithTheirPlace) {
-    const auto fault = [](const std::string& text) {
+    const auto fault = [](const std::string& text, const std::string& other = "") {
         const File file(text);
         try {
-            ScatteredState{file.path};
+            ScatteredState{file.path + other};
         } catch (const std::invalid_argument& error) {
             return std::string(error.what());
         }
@@ -82,6 +110,11 @@ TEST(FluidScatteredState, FaultsAreSaidWithTheirPlace) {
               std::string::npos);
     EXPECT_NE(fault("x,y,temperature\n0,0\n").find("line 2: 3 numbers"), std::string::npos);
     EXPECT_NE(fault("x,y,temperature\n0,0,1\n").find("at least three points"), std::string::npos);
+    EXPECT_NE(fault("", ".csv").find(".csv.csv: the file cannot be opened"), std::string::npos);
+    EXPECT_NE(fault("").find(".csv: the file is empty"), std::string::npos);
+    EXPECT_NE(fault("# no more\n").find(".csv: the file is empty"), std::string::npos);
+    EXPECT_NE(fault("x,y,temperature\n0,0,1\n0,0,1\n0,0,1\n").find(".csv: the points lie all at"),
+              std::string::npos);
     EXPECT_EQ(fault("x,y,temperature\n0,0,1\n1,0,2\n0,1,3\n"), "");
 }
 

@@ -250,6 +250,17 @@ TEST(SceneCheck, Probes) {
     expect_fault("probe[0].of=\"solid\"", "lies in no body");
 }
 
+TEST(SceneCheck, InitialState) {
+    const std::filesystem::path file = std::filesystem::temp_directory_path()
+                                       / ("duet-state-" + std::to_string(getpid()) + ".csv");
+    const std::string change = "fluid.initial_state=\"" + file.string() + "\"";
+    std::ofstream(file) << "x,y,temperature\n0,0,1\n1,0,warm\n0,1,1\n";
+    expect_one({change}, file.string() + ", line 3: 'warm' is no finite number");
+    std::ofstream(file) << "x,y,temperature\n0,0,1\n1,0,2\n0,1,1\n";
+    expect_one({change}, "");
+    std::filesystem::remove(file);
+}
+
 /// The good case with a triangle from (1, 0) over (3, 0) to (2, 1) from a mesh file as its body.
 class MeshBody : public testing::Test {
   protected:
