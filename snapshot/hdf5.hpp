@@ -90,22 +90,12 @@ class Group {
                 place_ + "/" + name};
     }
 
-    /// Creates a group that no reader can reach until link() names it. `name` is for messages.
-    Group create_unlinked(const std::string& name) {
-        return {
-            guard(H5Gcreate_anon(id(), H5P_DEFAULT, H5P_DEFAULT), H5Gclose, "create group " + name),
-            place_ + "/" + name};
-    }
-
-    void link(const Group& group, const std::string& name) {
-        check(H5Olink(group.id(), id(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), "link " + name);
-    }
-
-    /// Gives the data set `name` of another group of the same file the same name here, without a
-    /// copy.
-    void share(const Group& other, const std::string& name) {
+    /// Gives the object at `place` of the other file `file` the name `name` here. A relative `file` is
+    /// sought in this file's folder.
+    void refer(const std::string& name, const std::string& file, const std::string& place) {
         check(
-            H5Lcreate_hard(other.id(), name.c_str(), id(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+            H5Lcreate_external(
+                file.c_str(), place.c_str(), id(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
             "link " + name);
     }
 
@@ -185,8 +175,8 @@ class Group {
 /// A file opened for writing, and its root group.
 ///
 /// Metadata reaches the disk in flush() only, never by eviction from HDF5's cache between two
-/// flushes, and no lock is held: so a reader may open the file while it grows, and a killed writer
-/// leaves what its last flush wrote.
+/// flushes, and no lock is held: so a reader may open the file while it grows. A flush itself is
+/// several writes; a writer killed within one may leave a file that cannot be read.
 class File : public Group {
   public:
     /// Creates `path`, replacing what is there.

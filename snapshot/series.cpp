@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <numeric>
-#include <optional>
 #include <set>
 #include <stdexcept>
 #include <system_error>
@@ -94,34 +93,34 @@ XdmfArray write_field(hdf5::Group& group, const Field& field) {
 } // namespace
 
 struct Series::State {
-    State(const std::filesystem::path& stem, Cell kind)
-        : cell(kind), name(stem.filename().string()), xdmf(with_suffix(stem, ".xdmf")),
-          file(with_suffix(stem, ".h5")) {}
-
     void append(const Frame& frame);
-    void write_mesh(hdf5::Group& group, const Frame& frame);
+    void write_mesh(hdf5::Group& data, const std::string& file, const Frame& frame);
+    void write_index() const;
 
     Cell cell;
-    std::string name;
-    std::filesystem::path xdmf;
-    hdf5::File file;
+    std::filesystem::path stem;
+    std::map<std::string, std::string> attributes;
+    std::string name = stem.filename().string();
+    std::string data_folder = name + "_frames"; ///< beside the index
     std::size_t frames = 0;
     std::string grids; ///< the XDMF text of all frames so far
 
-    // The mesh of the last frame, so that an unchanged one is stored once.
+    // The mesh of the last frame and the files that hold it, so that an unchanged one is stored
+    // once.
     std::vector<double> position;            ///< [points][3]
     std::vector<std::uint32_t> connectivity; ///< [cells][nodes_per_cell]
-    std::optional<hdf5::Group> last;
+    std::string position_file, connectivity_file;
 };
 
-/// Writes the mesh, or links what is the same as in the last frame.
-void Series::State::write_mesh(hdf5::Group& group, const Frame& frame) {
+/// Writes the mesh, or links what is the same as in the last frame; `file` is where `data` lies.
+void Series::State::write_mesh(hdf5::Group& data, const std::string& file, const Frame& frame) {
     std::vector<double> points = padded(frame.position);
-    if (last && points == position) {
-        group.share(*last, "position");
+    if (points == position) {
+        data.refer("position", position_file, "/position");
     } else {
         position = std::move(points);
-        group.write<double>("position", position, {position.size() / 3, 3});
+        position_file = file;
+        data.write<double>("position", position, {position.size() / 3, 3});
     }
 
     std::vector<std::uint32_t> cells(frame.connectivity.begin(), frame.connectivity.end());
@@ -129,14 +128,29 @@ void Series::State::write_mesh(hdf5::Group& group, const Frame& frame) {
         cells.resize(position.size() / 3);
         std::iota(cells.begin(), cells.end(), 0U);
     }
-    if (last && cells == connectivity) {
-        group.share(*last, "connectivity");
+    if (cells == connectivity) {
+        data.refer("connectivity", connectivity_file, "/connectivity");
     } else {
         connectivity = std::move(cells);
+        connectivity_file = file;
         const std::size_t nodes = nodes_per_cell(cell);
-        group.write<std::uint32_t>(
+        data.write<std::uint32_t>(
             "connectivity", connectivity, {connectivity.size() / nodes, nodes});
     }
+}
+
+/// `stem`.h5: the attributes, and each frame by its name.
+void Series::State::write_index() const {
+    const std::filesystem::path aside = with_suffix(stem, ".h5.new");
+    {
+        hdf5::File index(aside);
+        for (const auto& [key, value] : attributes)
+            index.attribute(key, value);
+        for (std::size_t frame = 0; frame < frames; ++frame)
+            index.refer(frame_name(frame), data_folder + "/" + frame_name(frame) + ".h5", "/");
+        index.flush();
+    }
+    std::filesystem::rename(aside, with_suffix(stem, ".h5"));
 }
 
 void Series::State::append(const Frame& frame) {
@@ -153,34 +167,38 @@ void Series::State::append(const Frame& frame) {
                   cells,
                   nodes_per_cell(cell),
                   {}};
-    hdf5::Group group = file.create_unlinked(grid.group);
-    group.attribute("time", frame.time);
-    write_mesh(group, frame);
-    for (const Field& field : frame.fields)
-        grid.fields.push_back(write_field(group, field));
+    const std::string file = grid.group + ".h5";
+    {
+        hdf5::File data(stem.parent_path() / data_folder / file);
+        data.attribute("time", frame.time);
+        write_mesh(data, file, frame);
+        for (const Field& field : frame.fields)
+            grid.fields.push_back(write_field(data, field));
+        data.flush();
+    }
 
-    // The frame is on disk before anything points to it: first its data, then its name, last the
-    // XDMF. A writer killed in between leaves the frames before.
-    file.flush();
-    file.link(group, grid.group);
-    file.flush();
-    grids += xdmf_grid(grid, name + ".h5");
-    replace_file(xdmf, xdmf_document(name, grids));
-    last = std::move(group);
+    // The frame is whole before the index names it, and the index before the XDMF leads to it. A
+    // writer killed in between leaves the frames before.
     ++frames;
+    write_index();
+    grids += xdmf_grid(grid, name + ".h5");
+    replace_file(with_suffix(stem, ".xdmf"), xdmf_document(name, grids));
 }
 
 Series::Series(const std::filesystem::path& stem,
                Cell cell,
-               const std::map<std::string, std::string>& attributes) {
+               const std::map<std::string, std::string>& attributes)
+    : state_(std::make_unique<State>(State{.cell = cell, .stem = stem, .attributes = attributes})) {
     // An XDMF file from before would point into the new, empty data; and one without a frame makes
     // ParaView crash, so the new one comes with the first frame.
     std::error_code ignored;
     std::filesystem::remove(with_suffix(stem, ".xdmf"), ignored);
-    state_ = std::make_unique<State>(stem, cell);
-    for (const auto& [name, value] : attributes)
-        state_->file.attribute(name, value);
-    state_->file.flush();
+    state_->write_index();
+    const std::filesystem::path data = stem.parent_path() / state_->data_folder;
+    std::filesystem::create_directory(data);
+    for (const auto& entry : std::filesystem::directory_iterator(data))
+        if (entry.path().filename().string().starts_with("frame_"))
+            std::filesystem::remove(entry.path());
 }
 
 Series::~Series() = default;

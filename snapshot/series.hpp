@@ -1,13 +1,15 @@
-// A series of snapshots in time, in one HDF5 file beside an XDMF file that ParaView opens.
+// A series of snapshots in time: an HDF5 file beside an XDMF file that ParaView opens.
 //
-// The pair is valid after every append, also when the process is killed: the frame's data are
-// flushed before the frame is linked, and the XDMF is written aside and renamed last. Other
-// programs may read while the series grows.
+// `stem`.h5 shows the frames as groups; their data lie in `stem`_frames/, a file each, which is
+// written once and closed before anything leads to it. `stem`.h5 and `stem`.xdmf are written aside
+// and renamed with each frame. So the series is valid after every append, also when the process is
+// killed, and other programs may read it while it grows. (HDF5 cannot do this within one file: a
+// new link changes several blocks of it, and a kill between two of them leaves a torn file.)
 //
 // In the files plane vectors and positions carry a zero as third component: ParaView then draws
 // points and arrows without a filter. A mesh equal to the last frame's is linked, not written
-// again. The XDMF is rewritten whole with each frame, about 1 kB a frame: meant for hundreds of
-// frames.
+// again. Both indices are rewritten whole with each frame, about 1 kB a frame: meant for hundreds
+// of frames.
 
 #pragma once
 
@@ -42,9 +44,9 @@ struct Frame {
 
 class Series {
   public:
-    /// Creates `stem`.h5, replacing it and removing `stem`.xdmf, which comes with the first frame;
-    /// throws std::runtime_error naming the path and the reason. `attributes` (e.g. title, version,
-    /// units) are stored on the root group.
+    /// Creates `stem`.h5, replacing an earlier series and removing `stem`.xdmf, which comes with the
+    /// first frame; throws std::runtime_error naming the path and the reason. `attributes` (e.g.
+    /// title, version, units) are stored on the root group.
     Series(const std::filesystem::path& stem,
            Cell cell,
            const std::map<std::string, std::string>& attributes = {});
