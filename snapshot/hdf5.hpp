@@ -90,13 +90,12 @@ class Group {
                 place_ + "/" + name};
     }
 
-    /// Gives the object at `place` of the other file `file` the name `name` here. A relative `file` is
-    /// sought in this file's folder.
+    /// Gives the object at `place` of the other file `file` the name `name` here. A relative `file`
+    /// is sought in this file's folder.
     void refer(const std::string& name, const std::string& file, const std::string& place) {
-        check(
-            H5Lcreate_external(
-                file.c_str(), place.c_str(), id(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
-            "link " + name);
+        check(H5Lcreate_external(
+                  file.c_str(), place.c_str(), id(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+              "link " + name);
     }
 
     /// Writes `values` (row-major) as a new data set of `shape`.

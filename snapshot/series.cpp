@@ -93,15 +93,18 @@ XdmfArray write_field(hdf5::Group& group, const Field& field) {
 } // namespace
 
 struct Series::State {
+    State(Cell cells, std::filesystem::path path, std::map<std::string, std::string> texts)
+        : cell(cells), stem(std::move(path)), attributes(std::move(texts)) {}
+
     void append(const Frame& frame);
     void write_mesh(hdf5::Group& data, const std::string& file, const Frame& frame);
+    std::string data_file(const std::string& file) const { return name + "_frames/" + file; }
     void write_index() const;
 
     Cell cell;
     std::filesystem::path stem;
     std::map<std::string, std::string> attributes;
     std::string name = stem.filename().string();
-    std::string data_folder = name + "_frames"; ///< beside the index
     std::size_t frames = 0;
     std::string grids; ///< the XDMF text of all frames so far
 
@@ -147,7 +150,7 @@ void Series::State::write_index() const {
         for (const auto& [key, value] : attributes)
             index.attribute(key, value);
         for (std::size_t frame = 0; frame < frames; ++frame)
-            index.refer(frame_name(frame), data_folder + "/" + frame_name(frame) + ".h5", "/");
+            index.refer(frame_name(frame), data_file(frame_name(frame) + ".h5"), "/");
         index.flush();
     }
     std::filesystem::rename(aside, with_suffix(stem, ".h5"));
@@ -162,14 +165,17 @@ void Series::State::append(const Frame& frame) {
 
     XdmfGrid grid{frame_name(frames),
                   frame.time,
+                  {},
+                  {},
+                  {},
                   cell == Cell::vertex ? "Polyvertex" : "Triangle",
                   points,
                   cells,
                   nodes_per_cell(cell),
                   {}};
-    const std::string file = grid.group + ".h5";
+    const std::string file = grid.name + ".h5";
     {
-        hdf5::File data(stem.parent_path() / data_folder / file);
+        hdf5::File data(stem.parent_path() / data_file(file));
         data.attribute("time", frame.time);
         write_mesh(data, file, frame);
         for (const Field& field : frame.fields)
@@ -181,20 +187,23 @@ void Series::State::append(const Frame& frame) {
     // writer killed in between leaves the frames before.
     ++frames;
     write_index();
-    grids += xdmf_grid(grid, name + ".h5");
+    grid.file = data_file(file);
+    grid.position_file = data_file(position_file);
+    grid.connectivity_file = data_file(connectivity_file);
+    grids += xdmf_grid(grid);
     replace_file(with_suffix(stem, ".xdmf"), xdmf_document(name, grids));
 }
 
 Series::Series(const std::filesystem::path& stem,
                Cell cell,
                const std::map<std::string, std::string>& attributes)
-    : state_(std::make_unique<State>(State{.cell = cell, .stem = stem, .attributes = attributes})) {
+    : state_(std::make_unique<State>(cell, stem, attributes)) {
     // An XDMF file from before would point into the new, empty data; and one without a frame makes
     // ParaView crash, so the new one comes with the first frame.
     std::error_code ignored;
     std::filesystem::remove(with_suffix(stem, ".xdmf"), ignored);
     state_->write_index();
-    const std::filesystem::path data = stem.parent_path() / state_->data_folder;
+    const std::filesystem::path data = stem.parent_path() / state_->data_file({});
     std::filesystem::create_directory(data);
     for (const auto& entry : std::filesystem::directory_iterator(data))
         if (entry.path().filename().string().starts_with("frame_"))

@@ -44,9 +44,9 @@ struct Frame {
 
 class Series {
   public:
-    /// Creates `stem`.h5, replacing an earlier series and removing `stem`.xdmf, which comes with the
-    /// first frame; throws std::runtime_error naming the path and the reason. `attributes` (e.g.
-    /// title, version, units) are stored on the root group.
+    /// Creates `stem`.h5, replacing an earlier series and removing `stem`.xdmf, which comes with
+    /// the first frame; throws std::runtime_error naming the path and the reason. `attributes`
+    /// (e.g. title, version, units) are stored on the root group.
     Series(const std::filesystem::path& stem,
            Cell cell,
            const std::map<std::string, std::string>& attributes = {});

@@ -65,24 +65,24 @@ std::string shortest(double value) {
     return {text.data(), end};
 }
 
-std::string xdmf_grid(const XdmfGrid& grid, const std::string& data_file) {
+std::string xdmf_grid(const XdmfGrid& grid) {
     const std::string real = "NumberType=\"Float\" Precision=\"8\"";
     const std::string natural = "NumberType=\"UInt\" Precision=\"4\"";
-    const std::string folder = data_file + ":/" + grid.group + "/";
-    std::string text = "<Grid Name=\"" + grid.group + "\" GridType=\"Uniform\">\n<Time Value=\""
+    std::string text = "<Grid Name=\"" + grid.name + "\" GridType=\"Uniform\">\n<Time Value=\""
                        + shortest(grid.time) + "\"/>\n";
     text += "<Topology TopologyType=\"" + grid.topology + "\" NumberOfElements=\""
             + std::to_string(grid.cells) + "\" NodesPerElement=\""
             + std::to_string(grid.nodes_per_cell) + "\">\n"
-            + data_item(folder + "connectivity", grid.cells, grid.nodes_per_cell, natural)
+            + data_item(
+                grid.connectivity_file + ":/connectivity", grid.cells, grid.nodes_per_cell, natural)
             + "</Topology>\n";
     text += "<Geometry GeometryType=\"XYZ\">\n"
-            + data_item(folder + "position", grid.points, 3, real) + "</Geometry>\n";
+            + data_item(grid.position_file + ":/position", grid.points, 3, real) + "</Geometry>\n";
     for (const XdmfArray& field : grid.fields) {
         text += "<Attribute Name=\"" + escaped(field.name) + "\" AttributeType=\""
                 + attribute_type(field.components) + "\" Center=\""
                 + (field.per_cell ? "Cell" : "Node") + "\">\n"
-                + data_item(folder + field.name, field.entries, field.components, real)
+                + data_item(grid.file + ":/" + field.name, field.entries, field.components, real)
                 + "</Attribute>\n";
     }
     return text + "</Grid>\n";

@@ -1,5 +1,5 @@
-// The text of an XDMF 3 file: a temporal collection of uniform grids whose numbers lie in an HDF5
-// file beside it. https://www.xdmf.org/index.php/XDMF_Model_and_Format
+// The text of an XDMF 3 file: a temporal collection of uniform grids whose numbers lie in HDF5
+// files. https://www.xdmf.org/index.php/XDMF_Model_and_Format
 
 #pragma once
 
@@ -18,11 +18,15 @@ struct XdmfArray {
     bool per_cell = false;
 };
 
-/// One point in time. All arrays lie in the HDF5 group /`group`; beside the fields these are
-/// `position` [points][3] and `connectivity` [cells][nodes_per_cell].
+/// One point in time. The fields lie at the root of the HDF5 file `file`, the mesh in `position` of
+/// `position_file` [points][3] and `connectivity` of `connectivity_file` [cells][nodes_per_cell].
+/// Files are named from the folder of the XDMF.
 struct XdmfGrid {
-    std::string group;
+    std::string name;
     double time = 0; ///< s
+    std::string file;
+    std::string position_file;
+    std::string connectivity_file;
     std::string topology;
     std::size_t points = 0;
     std::size_t cells = 0;
@@ -33,8 +37,8 @@ struct XdmfGrid {
 /// A number in the shortest decimal form that reads back to the same bits.
 std::string shortest(double value);
 
-/// The <Grid> element of one point in time; `data_file` is the HDF5 file's name without folders.
-std::string xdmf_grid(const XdmfGrid& grid, const std::string& data_file);
+/// The <Grid> element of one point in time.
+std::string xdmf_grid(const XdmfGrid& grid);
 
 /// The whole file round the grids' elements.
 std::string xdmf_document(const std::string& name, const std::string& grids);

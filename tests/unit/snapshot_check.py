@@ -1,6 +1,7 @@
 """Reads series as ParaView does: every reference of STEM.xdmf must lead to a data set of the stated
-shape and type in STEM.h5. Prints the number of frames of each; exits with 1 and a sentence if not.
-With --sealed it also wants the values that the killed writer of snapshot_series.cpp wrote."""
+shape and type, and STEM.h5 must show the same by the frame's name. Prints the number of frames of
+each; exits with 1 and a sentence if not. With --sealed it also wants the values that the killed
+writer of snapshot_series.cpp wrote."""
 
 import sys
 import xml.etree.ElementTree as xml
@@ -10,17 +11,16 @@ import h5py
 import numpy
 
 
-def arrays(data, element):
+def arrays(stem, element):
     for item in element.iter("DataItem"):
         file, place = item.text.split(":")
-        if file != Path(data.filename).name:
-            sys.exit(f"{item.text} is not in the file beside the XDMF")
-        if place not in data:
-            sys.exit(f"{item.text} does not exist")
-        array = data[place][()]
+        with h5py.File(stem.parent / file, "r") as data:
+            if place not in data:
+                sys.exit(f"{item.text} does not exist")
+            array = data[place][()]
         shape = tuple(int(n) for n in item.get("Dimensions").split())
         kind = {"Float": "<f8", "UInt": "<u4"}[item.get("NumberType")]
-        # XDMF leaves a last extent of one out.
+#XDMF leaves a last extent of one out.
         if array.shape != shape and array.shape != shape + (1,):
             sys.exit(f"{item.text} has the shape {array.shape}, the XDMF says {shape}")
         if array.dtype != numpy.dtype(kind):
@@ -34,7 +34,11 @@ def frames(stem, sealed):
     data = h5py.File(f"{stem}.h5", "r")
     grids = xml.parse(f"{stem}.xdmf").getroot().findall("./Domain/Grid/Grid")
     for index, grid in enumerate(grids):
-        found = dict(arrays(data, grid))
+        found = dict(arrays(stem, grid))
+        frame = data[f"frame_{index:06}"]
+        for name, array in found.items():
+            if not (frame[name][()].reshape(array.shape) == array).all():
+                sys.exit(f"frame {index}: {stem}.h5 has another {name} than the XDMF")
         connectivity = found["connectivity"]
         if grid.find("Topology").get("NumberOfElements") != str(len(connectivity)):
             sys.exit(f"frame {index}: the topology's count is not that of its connectivity")
