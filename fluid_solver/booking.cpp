@@ -15,16 +15,15 @@ Vec2 Fluid::Implementation::body_force(std::size_t a) const {
 void Fluid::Implementation::book_body_force(double dt) {
     if (buoyant_ || forced_) {
         totals_.impulse_from_body_force +=
-            (dt * config.density * volume)
-            * Vec2{sum([&](std::size_t a) { return body_force(a).x; }),
-                   sum([&](std::size_t a) { return body_force(a).y; })};
+            (dt * config.density * volume) * sum([&](std::size_t a) { return body_force(a); });
     }
 }
 
 Vec2 Fluid::Implementation::momentum() const {
     const double m = config.density * volume;
-    return {m * sum([&](std::size_t a) { return particles.fields[a].u; }),
-            m * sum([&](std::size_t a) { return particles.fields[a].v; })};
+    return m * sum([&](std::size_t a) {
+               return Vec2{particles.fields[a].u, particles.fields[a].v};
+           });
 }
 
 /// Books what passes through each wall cell in this step.

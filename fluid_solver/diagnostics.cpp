@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 
 #include <cmath>
+#include <optional>
 #include <sstream>
 
 namespace duet::fluid {
@@ -52,39 +53,55 @@ namespace {
 /// points, a plane or a constant about the point asked for.
 class LocalFit {
   public:
-    explicit LocalFit(double scale) : scale_(scale) {}
+    using Row = Eigen::Matrix<double, 6, 1>;
 
-    void add(Vec2 r, double weight, double value) {
-        const double x = r.x / scale_, y = r.y / scale_;
-        Eigen::Matrix<double, 6, 1> row;
-        row << 1, x, y, x * x, x * y, y * y;
+    LocalFit(const Eigen::Matrix<double, 6, 6>& normal, const Row& right, int points)
+        : normal_(normal), right_(right), points_(points) {}
+
+    void add(const Row& row, double weight, double value) {
         normal_ += weight * row * row.transpose();
         right_ += weight * value * row;
         ++points_;
     }
-    /// The polynomial's value and gradient at the point.
+    /// The polynomial's value and scaled gradient at the point.
     struct Result {
         double value;
         Vec2 slope;
     };
     Result result() const {
-        for (const int terms : {6, 3, 1}) {
-            const Eigen::MatrixXd matrix = normal_.topLeftCorner(terms, terms);
-            const Eigen::LDLT<Eigen::MatrixXd> factor(matrix);
-            if (points_ >= terms && factor.rcond() > 1e-10) {
-                const Eigen::VectorXd c = factor.solve(right_.head(terms));
-                return {c[0], terms > 1 ? (1 / scale_) * Vec2{c[1], c[2]} : Vec2{}};
-            }
+        if (const auto c = solve<6>()) {
+            return {(*c)[0], {(*c)[1], (*c)[2]}};
+        }
+        if (const auto c = solve<3>()) {
+            return {(*c)[0], {(*c)[1], (*c)[2]}};
+        }
+        if (const auto c = solve<1>()) {
+            return {(*c)[0], {}};
         }
         const double nan = std::numeric_limits<double>::quiet_NaN();
         return {nan, {nan, nan}};
     }
 
   private:
-    double scale_;
-    Eigen::Matrix<double, 6, 6> normal_ = Eigen::Matrix<double, 6, 6>::Zero();
-    Eigen::Matrix<double, 6, 1> right_ = Eigen::Matrix<double, 6, 1>::Zero();
-    int points_ = 0;
+    Eigen::Matrix<double, 6, 6> normal_;
+    Row right_;
+    int points_;
+
+    /// The first `terms` coefficients, if the points determine them. (The ratio of the pivots
+    /// bounds the condition well enough for so few terms.)
+    template <int terms>
+    std::optional<Eigen::Matrix<double, terms, 1>> solve() const {
+        if (points_ < terms) {
+            return {};
+        }
+        const Eigen::LDLT<Eigen::Matrix<double, terms, terms>> factor(
+            normal_.topLeftCorner<terms, terms>());
+        const auto pivots = factor.vectorD();
+        if (!(pivots.minCoeff() > 1e-10 * pivots.maxCoeff())) {
+            return {};
+        }
+        return factor.solve(right_.head<terms>());
+    }
 };
 
 } // namespace
@@ -103,7 +120,14 @@ Values Fluid::Implementation::at(Vec2 point) const {
     const double R = kernel.support();
     std::vector<Contact> contacts;
     boundary_.contacts(point, contacts);
-    LocalFit u(R), v(R), p(R), T(R);
+    const auto terms = [R](Vec2 r) {
+        const double x = r.x / R, y = r.y / R;
+        return LocalFit::Row{1, x, y, x * x, x * y, y * y};
+    };
+    // The particles count alike for u, v, p and T.
+    Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
+    Eigen::Matrix<double, 6, 4> right = Eigen::Matrix<double, 6, 4>::Zero();
+    int points = 0;
     // The particles have moved by less than a cell since they were sorted: search two cells about.
     const int column = grid_.column(point.x), row = grid_.row(point.y);
     for (int j = std::max(0, row - 2); j <= std::min(grid_.rows() - 1, row + 2); ++j) {
@@ -113,18 +137,18 @@ Values Fluid::Implementation::at(Vec2 point) const {
              ++a) {
             const Vec2 r = particles.position(a) - point;
             if (norm(r) < R && !Ghosts::hidden(contacts, r)) {
-                const double w = kernel.value(norm(r));
                 const Fields& f = particles.fields[a];
-                u.add(r, w, f.u);
-                v.add(r, w, f.v);
-                p.add(
-                    r,
-                    w,
-                    f.p + hydrostatics_.pressure(particles.position(a), particles.compartment[a]));
-                T.add(r, w, f.T);
+                const double head =
+                    hydrostatics_.pressure(particles.position(a), particles.compartment[a]);
+                const LocalFit::Row one = terms(r), weighted = kernel.value(norm(r)) * one;
+                normal += weighted * one.transpose();
+                right += weighted * Eigen::RowVector4d(f.u, f.v, f.p + head, f.T);
+                ++points;
             }
         }
     }
+    LocalFit u(normal, right.col(0), points), v(normal, right.col(1), points),
+        p(normal, right.col(2), points), T(normal, right.col(3), points);
     // Walls contribute what is known of them, at points half a spacing apart.
     for (const Contact& contact : contacts) {
         for (int i = -5; i <= 5; ++i) {
@@ -136,13 +160,13 @@ Values Fluid::Implementation::at(Vec2 point) const {
             const double w = kernel.value(norm(r));
             const Lanes wall = boundary_.at(*contact.face, contact.foot + ahead).value;
             if (contact.face->knows_u()) {
-                u.add(r, w, wall[0]);
+                u.add(terms(r), w, wall[0]);
             }
             if (contact.face->knows_v()) {
-                v.add(r, w, wall[1]);
+                v.add(terms(r), w, wall[1]);
             }
             if (contact.face->heated && heat_) {
-                T.add(r, w, wall[3]);
+                T.add(terms(r), w, wall[3]);
             }
         }
     }
@@ -150,7 +174,7 @@ Values Fluid::Implementation::at(Vec2 point) const {
     return {temperature.value,
             {u.result().value, v.result().value},
             p.result().value,
-            temperature.slope};
+            (1 / R) * temperature.slope};
 }
 
 Snapshot Fluid::Implementation::snapshot() const {

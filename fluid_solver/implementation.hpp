@@ -114,10 +114,11 @@ class Fluid::Implementation {
 
     /// Sum of term(a) over the particles, in fixed chunks.
     template <class Term>
-    double sum(const Term& term) const {
-        double total = 0;
+    auto sum(const Term& term) const {
+        using Number = decltype(term(std::size_t{}));
+        Number total{};
         for (std::size_t first = 0; first < particles.size(); first += chunk_size) {
-            double part = 0;
+            Number part{};
             for (std::size_t a = first; a < std::min(particles.size(), first + chunk_size); ++a) {
                 part += term(a);
             }

@@ -118,9 +118,13 @@ void start(Player& player,
            spdlog::logger& log) {
     std::vector<std::string> command = part.command;
     command.insert(command.end(), {"--connect", address});
-    // Threads that spin while the other solver works would take its cores.
+    // Threads that spin while the other solver works would take its cores; threads that sleep at
+    // each barrier cost more than a short loop (an idle core is slow to wake). So they spin for some
+    // 40 us, then sleep.
     const std::map<std::string, std::string> environment = {
-        {"OMP_WAIT_POLICY", "passive"}, {"OMP_NUM_THREADS", std::to_string(player.threads)}};
+        {"OMP_WAIT_POLICY", "passive"},
+        {"GOMP_SPINCOUNT", "3000"},
+        {"OMP_NUM_THREADS", std::to_string(player.threads)}};
     std::string line;
     for (const auto& [name, value] : environment)
         line += name + "=" + value + " ";
