@@ -101,6 +101,7 @@ class Fluid::Implementation {
     Vec2 momentum() const;
     void book(double dt);
     void book_energy(double dt);
+    Vec2 wall_velocity(std::size_t cell) const;
     void pass(std::uint32_t cell, double heat, Vec2 impulse);
 
     // sound.cpp

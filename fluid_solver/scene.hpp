@@ -142,7 +142,7 @@ struct Ledger {
     double work_from_interface = 0;    ///< J/m
     double work_from_walls = 0;        ///< J/m
     double body_force_work = 0;        ///< J/m, of buoyancy and the given body force
-    double viscous_loss = 0;           ///< J/m, 2 mu D:D over fluid and time
+    double viscous_loss = 0;           ///< J/m, what the viscous term takes from the motion
     double kinetic_energy = 0;         ///< J/m
     double mechanical_residual = 0;    ///< J/m, kinetic energy gained beyond what the four explain
     Vec2 force_on_solids;              ///< N/m, mean since the last Fluid::mark

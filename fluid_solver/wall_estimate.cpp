@@ -141,8 +141,8 @@ void WallEstimate::run(const Boundary& boundary,
         loads_[c].compartment = s.compartment;
         const double slope_T = cell.heated ? s.rise[3] / bent : known_slope(boundary, cell);
         loads_[c].heat_flux = material.conductivity * slope_T;
-        loads_[c].traction = (s.wp / s.w) * cell.normal
-                             - (material.density * material.kinematic_viscosity * shear) * tangent;
+        loads_[c].shear = -(material.density * material.kinematic_viscosity * shear) * tangent;
+        loads_[c].traction = (s.wp / s.w) * cell.normal + loads_[c].shear;
     }
 }
 

@@ -26,6 +26,7 @@ struct WallMaterial {
 struct WallLoad {
     double heat_flux = 0; ///< W/m2, from the wall into the fluid
     Vec2 traction;        ///< Pa, on the wall
+    Vec2 shear;           ///< Pa, the viscous part of it
     std::uint16_t compartment = 0;
 };
 
