@@ -235,9 +235,9 @@ void Participant::advance(const protocol::Window& window,
     }
 }
 
-/// Alone, ten of the fluid's own steps: fewer messages. With a solid one, and no more than lets the first layer of a deformable body, rho_s ds,
-/// weigh as much as what the sound reaches in the window, rho_f c window (the solid knows c only if
-/// the scene gives it).
+/// Alone, ten of the fluid's own steps: fewer messages. With a solid one, and no more than lets the
+/// first layer of a deformable body, rho_s ds, weigh as much as what the sound reaches in the
+/// window, rho_f c window (the solid knows c only if the scene gives it).
 double Participant::longest_window(const v1::Ledger& now) const {
     constexpr double alone = 10;
     double longest = (scene_.has_solid() ? 1 : alone) * fluid_->stable_step();

@@ -119,8 +119,8 @@ void start(Player& player,
     std::vector<std::string> command = part.command;
     command.insert(command.end(), {"--connect", address});
     // Threads that spin while the other solver works would take its cores; threads that sleep at
-    // each barrier cost more than a short loop (an idle core is slow to wake). So they spin for some
-    // 40 us, then sleep.
+    // each barrier cost more than a short loop (an idle core is slow to wake). So they spin for
+    // some 40 us, then sleep.
     const std::map<std::string, std::string> environment = {
         {"OMP_WAIT_POLICY", "passive"},
         {"GOMP_SPINCOUNT", "3000"},
