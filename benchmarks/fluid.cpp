@@ -28,7 +28,7 @@ struct Square {
             [](Vec2 x) { return std::sin(3 * x.x) * std::cos(2 * x.y); },
             [](Vec2 x) { return std::cos(2 * x.x) * std::sin(3 * x.y); },
             [](Vec2 x) { return 1 - x.x + 0.1 * std::sin(5 * x.y); });
-        hydrostatics.levels.assign(1, {0.5, {0.5, 0.5}});
+        hydrostatics.levels.assign(1, {{0.5, 0.5}, {0.5, 0.5}});
         evaluate();
     }
     void evaluate() { evaluation.run(particles, boundary.grid(), boundary, input); }

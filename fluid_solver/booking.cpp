@@ -26,6 +26,19 @@ Vec2 Fluid::Implementation::momentum() const {
            });
 }
 
+/// Where nothing stands in the fluid, body forces alone change its momentum. Gradients that are
+/// corrected one particle at a time keep it but for their error; what they gave or took goes back
+/// to all particles alike.
+void Fluid::Implementation::close_momentum() {
+    const Vec2 missing = initial_momentum_ + totals_.impulse_from_body_force - momentum();
+    const double mass = config.density * volume * static_cast<double>(particles.size());
+    for_particles(particles.size(), config.threads, [&](std::size_t a) {
+        particles.fields[a].u += missing.x / mass;
+        particles.fields[a].v += missing.y / mass;
+    });
+    totals_.closure_momentum_abs += norm(missing);
+}
+
 /// Books what passes through each wall cell in this step.
 void Fluid::Implementation::book(double dt) {
     wall_estimate_.run(

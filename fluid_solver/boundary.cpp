@@ -19,19 +19,22 @@ Boundary::Boundary(const Config& config,
                    const std::vector<Chain>& chains,
                    const InterfaceState& state)
     : spacing_(config.spacing), support_(support_in_spacings * config.spacing), chains_(chains),
-      walls_(config.walls), conductivity_(config.conductivity),
+      walls_(config.walls), conductivity_(config.conductivity), periodic_(config.periodic),
       interface_nodes_(state.position.size()), position_(state.position) {
-    add_loop(config.region, false);
-    for (const std::vector<Vec2>& hole : config.holes) {
-        add_loop(hole, true);
-    }
-    assign_walls();
     lower_ = upper_ = config.region[0];
     for (const Vec2 c : config.region) {
         lower_ = {std::min(lower_.x, c.x), std::min(lower_.y, c.y)};
         upper_ = {std::max(upper_.x, c.x), std::max(upper_.y, c.y)};
     }
-    grid_ = CellGrid(lower_, upper_, support_);
+    grid_ = CellGrid(lower_, upper_, support_, periodic_);
+    add_loop(config.region, false);
+    for (const std::vector<Vec2>& hole : config.holes) {
+        add_loop(hole, true);
+    }
+    if (periodic_.any()) {
+        open_seams(config);
+    }
+    assign_walls();
     for (const Chain& chain : chains_) {
         interface_segments_ += chain.segments();
     }
@@ -44,9 +47,7 @@ void Boundary::place(const std::vector<Vec2>& positions) {
         return;
     }
     for (const Vec2 x : positions) {
-        const bool near = x.x >= lower_.x - support_ && x.x <= upper_.x + support_
-                          && x.y >= lower_.y - support_ && x.y <= upper_.y + support_;
-        if (!near) { // false for NaN
+        if (!in_reach(x)) {
             throw Diverged("the interface has left the fluid's region at (" + std::to_string(x.x)
                            + ", " + std::to_string(x.y)
                            + "); shorten time.window, or look at what moves the solid");
@@ -59,6 +60,7 @@ void Boundary::place(const std::vector<Vec2>& positions) {
 void Boundary::build() {
     segments_.clear();
     faces_.clear();
+    first_face_.clear();
     cells_.clear();
     velocity_.resize(interface_nodes_);
     acceleration_.resize(interface_nodes_);
@@ -70,6 +72,10 @@ void Boundary::build() {
     }
     add_walls();
     bend_cells();
+    first_face_.push_back(faces_.size());
+    for (std::size_t i = 0; periodic_.any() && i + 1 < first_face_.size(); ++i) {
+        add_images(first_face_[i], first_face_[i + 1]);
+    }
     register_faces();
     set_walls(time_);
 }
@@ -77,6 +83,7 @@ void Boundary::build() {
 void Boundary::add_chain(const Chain& chain) {
     const auto first = static_cast<std::uint32_t>(segments_.size());
     const auto first_face = static_cast<std::uint32_t>(faces_.size());
+    first_face_.push_back(first_face);
     const auto count = static_cast<std::uint32_t>(chain.segments());
     for (std::uint32_t j = 0; j < count; ++j) {
         const std::uint32_t a = chain.nodes[j];
@@ -220,7 +227,7 @@ void Boundary::bend_cells() {
 }
 
 void Boundary::register_faces() {
-    const double reach = support_ + grid_.cell() * std::sqrt(0.5) * (1 + 1e-9);
+    const double reach = support_ + 0.5 * norm(grid_.cell()) * (1 + 1e-9);
     const auto for_cells = [&](const auto& visit) {
         for (std::uint32_t f = 0; f < faces_.size(); ++f) {
             const Vec2 a = faces_[f].a, b = faces_[f].b;
@@ -301,13 +308,14 @@ void Boundary::contacts(Vec2 x, std::vector<Contact>& contacts) const {
 
 WallPoint Boundary::at(const Face& start, double arc) const {
     const Face* on = &start;
+    const int next = start.endless ? 0 : 1;
     while (arc < 0 && on->run_before > 0) {
-        --on;
+        on -= next;
         arc += on->length;
     }
     while (arc > on->length && on->run_after > 0) {
         arc -= on->length;
-        ++on;
+        on += next;
     }
     const Face& face = *on;
     // Segments of a face are sorted by where they start; most faces have equal segments, so the
@@ -364,11 +372,16 @@ Boundary::Nearest Boundary::nearest(Vec2 x) const {
 
 bool Boundary::contains(Vec2 x) const {
     bool inside = false;
-    for (const Face& face : faces_) {
-        const Vec2 a = face.a, b = face.b;
+    const auto cross_line = [&](Vec2 a, Vec2 b) {
         if ((a.y > x.y) != (b.y > x.y) && x.x < a.x + (x.y - a.y) / (b.y - a.y) * (b.x - a.x)) {
             inside = !inside;
         }
+    };
+    for (const Face& face : faces_) {
+        cross_line(face.a, face.b);
+    }
+    for (const Side& seam : seams_) {
+        cross_line(seam.a, seam.b);
     }
     return inside;
 }
@@ -385,6 +398,9 @@ double Boundary::area() const {
     double twice = 0;
     for (const Segment& s : segments_) {
         twice -= cross(s.a, s.b);
+    }
+    for (const Side& seam : seams_) {
+        twice -= cross(seam.a, seam.b);
     }
     return twice / 2;
 }

@@ -39,6 +39,7 @@ struct Face {
     std::uint32_t first = 0, segments = 0;
     bool heated = false;   ///< its temperature is known (a wall's or the solid's); adiabatic if not
     bool slip = false;     ///< the velocity is known across it alone
+    bool endless = false;  ///< in a periodic direction: goes on where it began
     std::uint32_t run = 0; ///< the first face of its run
     double run_before = 0, run_after = 0; ///< arc length of the run before and after this face
 
@@ -130,6 +131,7 @@ class Boundary {
     double area() const;
 
     const std::vector<Segment>& segments() const { return segments_; }
+    /// The faces, and after them the images of those that are seen over a periodic side.
     const std::vector<Face>& faces() const { return faces_; }
     const std::vector<WallCell>& cells() const { return cells_; }
     const CellGrid& grid() const { return grid_; }
@@ -137,6 +139,8 @@ class Boundary {
     std::size_t interface_nodes() const { return interface_nodes_; }
     /// Length of each wall of the configuration that is left beside leaning solids.
     const std::vector<double>& wall_length() const { return wall_length_; }
+    /// Whether there is no wall and no interface at all.
+    bool none_at_all() const { return segments_.empty(); }
     /// Whether heat can pass: a wall or the interface has a temperature, or a wall a heat flux.
     bool heated() const;
     /// Largest speed of a wall or an interface node, m/s.
@@ -148,6 +152,7 @@ class Boundary {
     struct Side {
         Vec2 a, b;
         std::uint32_t wall = none;
+        bool seam = false; ///< of a periodic region: no wall
     };
     /// A node of a wall, and the direction in which it can move.
     struct WallNode {
@@ -167,6 +172,13 @@ class Boundary {
     void link_sides(std::size_t first_face);
     double perimeter_position(Vec2 x, std::size_t& loop) const;
 
+    // seams.cpp
+    void open_seams(const Config& config);
+    void check_clear_of_seams(std::span<const Vec2> places, const std::string& what) const;
+    void close_over_seams(std::size_t first_face);
+    void add_images(std::size_t first_face, std::size_t end);
+    bool in_reach(Vec2 x) const;
+
     void build();
     void add_chain(const Chain& chain);
     void add_face(std::uint32_t first, std::uint32_t segments, bool heated, bool slip);
@@ -180,8 +192,10 @@ class Boundary {
     double spacing_, support_;
     std::vector<Chain> chains_;
     std::vector<std::vector<Side>> loops_; ///< the region's sides, then those of the holes
+    std::vector<Side> seams_;              ///< sides of the region that are no walls
     std::vector<Wall> walls_;
     double conductivity_;
+    Periodic periodic_;
     double time_ = 0;
     std::vector<WallNode> wall_nodes_;
     std::vector<double> wall_length_;
@@ -190,6 +204,7 @@ class Boundary {
     std::vector<Vec2> position_; ///< of the interface nodes
     std::vector<Segment> segments_;
     std::vector<Face> faces_;
+    std::vector<std::size_t> first_face_; ///< of each chain, then of each loop
     std::vector<WallCell> cells_;
     std::vector<Vec2> velocity_,
         acceleration_; ///< by node: interface first, then those of each side

@@ -107,6 +107,7 @@ class LocalFit {
 } // namespace
 
 Values Fluid::Implementation::at(Vec2 point) const {
+    point = grid_.wrapped(point);
     // A point on a wall is taken just before it.
     const double skin = 1e-3 * config.spacing;
     if (const auto wall = boundary_.nearest(point);
@@ -129,13 +130,10 @@ Values Fluid::Implementation::at(Vec2 point) const {
     Eigen::Matrix<double, 6, 4> right = Eigen::Matrix<double, 6, 4>::Zero();
     int points = 0;
     // The particles have moved by less than a cell since they were sorted: search two cells about.
-    const int column = grid_.column(point.x), row = grid_.row(point.y);
-    for (int j = std::max(0, row - 2); j <= std::min(grid_.rows() - 1, row + 2); ++j) {
-        const int from = std::max(0, column - 2), to = std::min(grid_.columns() - 1, column + 2);
-        for (std::uint32_t a = particles.cell_start()[grid_.index(from, j)];
-             a < particles.cell_start()[grid_.index(to, j) + 1];
+    grid_.for_cells_about(point, 2, [&](std::size_t cell) {
+        for (std::uint32_t a = particles.cell_start()[cell]; a < particles.cell_start()[cell + 1];
              ++a) {
-            const Vec2 r = particles.position(a) - point;
+            const Vec2 r = grid_.shortest(particles.position(a) - point);
             if (norm(r) < R && !Ghosts::hidden(contacts, r)) {
                 const Fields& f = particles.fields[a];
                 const double head =
@@ -146,7 +144,7 @@ Values Fluid::Implementation::at(Vec2 point) const {
                 ++points;
             }
         }
-    }
+    });
     LocalFit u(normal, right.col(0), points), v(normal, right.col(1), points),
         p(normal, right.col(2), points), T(normal, right.col(3), points);
     // Walls contribute what is known of them, at points half a spacing apart.

@@ -78,7 +78,8 @@ Fluid::Implementation::Implementation(const Config& c,
     for (const std::uint16_t k : particles.compartment) {
         compartment_size_[k] += 1;
     }
-    hydrostatics_.levels.assign(compartments, {config.reference_temperature, {}});
+    hydrostatics_.levels.assign(compartments,
+                                {{config.reference_temperature, config.reference_temperature}, {}});
     start();
 }
 
@@ -197,6 +198,9 @@ void Fluid::Implementation::step(double dt, double elapsed, const Motion& motion
         book(dt);
         book_energy(dt);
         correct_fields(dt);
+        if (boundary_.none_at_all()) {
+            close_momentum();
+        }
     }
     finish_step(dt, elapsed, motion);
 }
@@ -305,6 +309,23 @@ void Fluid::Implementation::move(double dt, bool with_shift) {
         particles.x[a] += dt * particles.fields[a].u + shift.x;
         particles.y[a] += dt * particles.fields[a].v + shift.y;
     });
+    wrap();
+}
+
+/// Brings what has left over a periodic side back over the other one.
+void Fluid::Implementation::wrap() {
+    if (grid_.periodic()) {
+        for_particles(particles.size(), config.threads, [&](std::size_t a) {
+            put(a, particles.position(a));
+        });
+    }
+}
+
+/// A particle to a place up to a period away from the region.
+void Fluid::Implementation::put(std::size_t a, Vec2 place) {
+    const Vec2 x = grid_.wrapped(place);
+    particles.x[a] = x.x;
+    particles.y[a] = x.y;
 }
 
 /// Puts a particle that has crossed a wall back to a tenth of a spacing before it and takes away
@@ -327,8 +348,7 @@ void Fluid::Implementation::keep_inside() {
                     const Vec2 n = wall.face->normal;
                     const Lanes moving = boundary_.at(*wall.face, wall.foot).value;
                     Fields& f = particles.fields[a];
-                    particles.x[a] = wall.point.x - clearance * n.x;
-                    particles.y[a] = wall.point.y - clearance * n.y;
+                    put(a, wall.point - clearance * n);
                     const double into = std::max(0.0, dot({f.u - moving[0], f.v - moving[1]}, n));
                     f.u -= into * n.x;
                     f.v -= into * n.y;

@@ -16,8 +16,10 @@ namespace duet::fluid {
 class Hydrostatics {
   public:
     struct Level {
-        double temperature = 0; ///< K; the mean over the compartment
-        Vec2 centre;            ///< of the compartment's particles, where this pressure vanishes
+        /// K, by direction: the mean over the compartment; the reference in a periodic direction,
+        /// where no wall holds the mean force
+        Vec2 temperature;
+        Vec2 centre; ///< of the compartment's particles, where this pressure vanishes
     };
 
     Hydrostatics(double density, double reference, Vec2 per_kelvin)
@@ -31,7 +33,8 @@ class Hydrostatics {
     Vec2 force(double temperature) const { return (temperature - reference_) * per_kelvin_; }
     /// What is left of it beside the level's.
     Vec2 departure(double temperature, std::uint16_t compartment) const {
-        return (temperature - levels[compartment].temperature) * per_kelvin_;
+        const Vec2 level = levels[compartment].temperature;
+        return {(temperature - level.x) * per_kelvin_.x, (temperature - level.y) * per_kelvin_.y};
     }
     /// rho b_level . (x - centre), Pa.
     double pressure(Vec2 x, std::uint16_t compartment) const {
@@ -39,7 +42,10 @@ class Hydrostatics {
     }
     /// rho b_level, Pa/m.
     Vec2 gradient(std::uint16_t compartment) const {
-        return density_ * force(levels[compartment].temperature);
+        const Vec2 level = levels[compartment].temperature;
+        return density_
+               * Vec2{(level.x - reference_) * per_kelvin_.x,
+                      (level.y - reference_) * per_kelvin_.y};
     }
 
   private:

@@ -85,6 +85,8 @@ class Fluid::Implementation {
     void place_interface(double elapsed, const Motion& motion);
     void put_interface();
     void move(double dt, bool with_shift);
+    void wrap();
+    void put(std::size_t a, Vec2 place);
     void keep_inside();
     void evaluate(double dt);
     void begin_step(double dt, double elapsed, const Motion& motion);
@@ -99,6 +101,7 @@ class Fluid::Implementation {
     Vec2 body_force(std::size_t a) const;
     void book_body_force(double dt);
     Vec2 momentum() const;
+    void close_momentum();
     void book(double dt);
     void book_energy(double dt);
     Vec2 wall_velocity(std::size_t cell) const;

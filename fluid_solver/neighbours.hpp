@@ -48,31 +48,38 @@ struct Neighbours {
     }
 };
 
-/// The particles of one cell and the eight about it: what any particle of that cell may have as
-/// neighbours. Places are relative to the middle of the cell, so that single precision holds their
-/// differences to 2e-7 of the support.
+/// The particles of one cell and the eight about it, over periodic sides too: what any particle of
+/// that cell may have as neighbours. Places are relative to the middle of the cell, so that single
+/// precision holds their differences to 2e-7 of the support.
 class Surroundings {
   public:
     /// Returns false if there are more than any sane cloud has.
     bool collect(const Particles& particles, const CellGrid& grid, int column, int row) {
         centre_ = grid.centre(column, row);
+        count_ = 0;
         const auto& start = particles.cell_start();
-        std::size_t n = 0;
+        const bool seam = grid.at_seam(column, row);
         for (int r = row - 1; r <= row + 1; ++r) {
-            const std::size_t first = start[grid.index(column - 1, r)];
-            const std::size_t last = start[grid.index(column + 2, r)];
-            if (n + (last - first) > most) {
-                return false;
+            if (!seam) {
+                const std::size_t first = start[grid.index(column - 1, r)];
+                const std::size_t last = start[grid.index(column + 2, r)];
+                if (!add(particles, first, last, centre_)) {
+                    return false;
+                }
+                continue;
             }
-            for (std::size_t b = first; b < last; ++b, ++n) {
-                x_[n] = static_cast<float>(particles.x[b] - centre_.x);
-                y_[n] = static_cast<float>(particles.y[b] - centre_.y);
-                index_[n] = static_cast<std::uint32_t>(b);
+            for (int c = column - 1; c <= column + 1; ++c) {
+                const CellGrid::Image image = grid.image(c, r);
+                if (!add(particles,
+                         start[image.cell],
+                         start[image.cell + 1],
+                         centre_ - image.shift)) {
+                    return false;
+                }
             }
         }
-        count_ = n;
         // Whole eights are searched: what fills them up lies out of reach.
-        for (std::size_t k = n; k < n + eight; ++k) {
+        for (std::size_t k = count_; k < count_ + eight; ++k) {
             x_[k] = y_[k] = std::numeric_limits<float>::max();
             index_[k] = 0;
         }
@@ -138,6 +145,21 @@ class Surroundings {
   private:
     /// Three times the density of a sane cloud.
     static constexpr std::size_t most = 192;
+
+    /// The particles from `first` to before `last`, relative to `centre`.
+    bool add(const Particles& particles, std::size_t first, std::size_t last, Vec2 centre) {
+        if (count_ + (last - first) > most) {
+            return false;
+        }
+        std::size_t n = count_;
+        for (std::size_t b = first; b < last; ++b, ++n) {
+            x_[n] = static_cast<float>(particles.x[b] - centre.x);
+            y_[n] = static_cast<float>(particles.y[b] - centre.y);
+            index_[n] = static_cast<std::uint32_t>(b);
+        }
+        count_ = n;
+        return true;
+    }
 
 #ifdef __AVX2__
     /// For each of the 256 patterns of kept lanes, the lanes in order, a byte each.

@@ -85,7 +85,7 @@ void Rates::run(const Particles& particles,
         Mat2 M;
         double distances = 0;
         for (std::size_t k = 0; k < s.near.count; ++k) {
-            const Vec2 x_ab = x - particles.position(s.near.index[k]);
+            const Vec2 x_ab = grid.shortest(x - particles.position(s.near.index[k]));
             distances += norm(x_ab);
             M += outer(-volume * slope_over_r(norm(x_ab), h) * x_ab, x_ab);
         }
@@ -101,7 +101,7 @@ void Rates::run(const Particles& particles,
         double warmed = 0;
         const double eta2 = 0.01 * h * h;
         for (std::size_t k = 0; k < s.near.count; ++k) {
-            const Vec2 x_ab = x - particles.position(s.near.index[k]);
+            const Vec2 x_ab = grid.shortest(x - particles.position(s.near.index[k]));
             const Fields& g = particles.fields[s.near.index[k]];
             const Pair pair{x_ab, slope_over_r(norm(x_ab), h), mass, rho, density(g.p), eta2};
             const Vec2 gradient = L * (pair.F * x_ab);

@@ -4,10 +4,25 @@
 
 namespace duet::fluid {
 
-CellGrid::CellGrid(Vec2 lower, Vec2 upper, double cell) : cell_(cell), inverse_(1 / cell) {
-    columns_ = static_cast<int>(std::ceil((upper.x - lower.x) * inverse_)) + 3;
-    rows_ = static_cast<int>(std::ceil((upper.y - lower.y) * inverse_)) + 3;
-    origin_ = lower - Vec2{1.5 * cell, 1.5 * cell};
+CellGrid::CellGrid(Vec2 lower, Vec2 upper, double cell, Periodic periodic) : lower_(lower) {
+    const auto divide = [cell](bool repeats,
+                               double from,
+                               double length,
+                               double& period,
+                               double& origin,
+                               double& side,
+                               int& count) {
+        const int inner = repeats ? std::max(1, static_cast<int>(length / cell))
+                                  : static_cast<int>(std::ceil(length * (1 / cell))) + 1;
+        period = repeats ? length : 0;
+        side = repeats ? length / inner : cell;
+        origin = from - (repeats ? 1 : 1.5) * side;
+        count = inner + 2;
+    };
+    const Vec2 size = upper - lower;
+    divide(periodic.x, lower.x, size.x, period_.x, origin_.x, cell_.x, columns_);
+    divide(periodic.y, lower.y, size.y, period_.y, origin_.y, cell_.y, rows_);
+    inverse_ = {1 / cell_.x, 1 / cell_.y};
 }
 
 void Particles::resize(std::size_t n) {

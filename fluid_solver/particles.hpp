@@ -5,32 +5,76 @@
 #include "fluid_solver/lanes.hpp"
 #include "fluid_solver/vector.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace duet::fluid {
 
-/// A grid of square cells over a rectangle, with a border of one empty cell all round.
+/// A grid of cells over a rectangle, with a border of one empty cell all round. In a periodic
+/// direction the rectangle holds whole cells, and beyond its last ones lie the first ones again.
 class CellGrid {
   public:
     CellGrid() = default;
-    CellGrid(Vec2 lower, Vec2 upper, double cell);
+    /// Cells are squares of side `cell`, in periodic directions somewhat longer.
+    CellGrid(Vec2 lower, Vec2 upper, double cell, Periodic periodic = {});
 
-    int column(double x) const { return clamp((x - origin_.x) * inverse_, columns_); }
-    int row(double y) const { return clamp((y - origin_.y) * inverse_, rows_); }
+    int column(double x) const { return clamp((x - origin_.x) * inverse_.x, columns_); }
+    int row(double y) const { return clamp((y - origin_.y) * inverse_.y, rows_); }
     std::size_t index(int column, int row) const {
         return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_)
                + static_cast<std::size_t>(column);
     }
     std::size_t index(Vec2 x) const { return index(column(x.x), row(x.y)); }
     Vec2 centre(int column, int row) const {
-        return {origin_.x + (column + 0.5) * cell_, origin_.y + (row + 0.5) * cell_};
+        return {origin_.x + (column + 0.5) * cell_.x, origin_.y + (row + 0.5) * cell_.y};
     }
-    int columns() const { return columns_; }
-    int rows() const { return rows_; }
-    double cell() const { return cell_; }
+    Vec2 cell() const { return cell_; } ///< its two sides, m
     std::size_t size() const { return index(0, rows_); }
+
+    Vec2 period() const { return period_; } ///< m; 0 in a direction that is not periodic
+    bool periodic() const { return period_.x > 0 || period_.y > 0; }
+    /// A place up to a period outside, brought back over the periodic sides.
+    Vec2 wrapped(Vec2 x) const {
+        return {wrap(x.x, lower_.x, period_.x), wrap(x.y, lower_.y, period_.y)};
+    }
+    /// The shortest of the ways that differ from r by whole periods.
+    Vec2 shortest(Vec2 r) const {
+        r.x -= period_.x > 0 ? period_.x * std::round(r.x / period_.x) : 0;
+        r.y -= period_.y > 0 ? period_.y * std::round(r.y / period_.y) : 0;
+        return r;
+    }
+    /// Whether a cell next to this one lies over a periodic side.
+    bool at_seam(int column, int row) const {
+        return (period_.x > 0 && (column == 1 || column == columns_ - 2))
+               || (period_.y > 0 && (row == 1 || row == rows_ - 2));
+    }
+    /// What stands for a cell beyond a periodic side: the cell that holds its particles, and how
+    /// far they are to be moved to stand there. Any other cell stands for itself.
+    struct Image {
+        std::size_t cell;
+        Vec2 shift;
+    };
+    Image image(int column, int row) const {
+        Vec2 shift;
+        const int c = over_seam(column, columns_ - 2, period_.x, shift.x);
+        const int r = over_seam(row, rows_ - 2, period_.y, shift.y);
+        return {index(c, r), shift};
+    }
+    /// Calls visit(cell) once for each cell at most `reach` cells away, row by row.
+    template <class Visit>
+    void for_cells_about(Vec2 x, int reach, const Visit& visit) const {
+        const auto [low, high] = about(row(x.y), reach, rows_, period_.y);
+        const auto [from, to] = about(column(x.x), reach, columns_, period_.x);
+        for (int r = low; r <= high; ++r) {
+            for (int c = from; c <= to; ++c) {
+                visit(image(c, r).cell);
+            }
+        }
+    }
 
   private:
     /// The border cells stay empty: what lies outside is counted with the nearest inner cell.
@@ -38,9 +82,27 @@ class CellGrid {
         const int i = static_cast<int>(scaled);
         return i < 1 ? 1 : (i > count - 2 ? count - 2 : i);
     }
+    static double wrap(double x, double lower, double period) {
+        return period > 0 ? (x < lower ? x + period : x >= lower + period ? x - period : x) : x;
+    }
+    /// `inner` cells are numbered from 1.
+    static int over_seam(int i, int inner, double period, double& shift) {
+        if (period > 0 && (i < 1 || i > inner)) {
+            shift = i < 1 ? -period : period;
+            return i < 1 ? i + inner : i - inner;
+        }
+        return i;
+    }
+    /// The first and the last cell of those about i in one direction, all of them once.
+    static std::pair<int, int> about(int i, int reach, int count, double period) {
+        if (period > 0) {
+            return {i - reach, i - reach + std::min(2 * reach + 1, count - 2) - 1};
+        }
+        return {std::max(0, i - reach), std::min(count - 1, i + reach)};
+    }
 
-    Vec2 origin_;
-    double cell_ = 1, inverse_ = 1;
+    Vec2 lower_, period_, origin_;
+    Vec2 cell_{1, 1}, inverse_{1, 1};
     int columns_ = 0, rows_ = 0;
 };
 

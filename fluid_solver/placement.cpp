@@ -10,9 +10,10 @@
 namespace duet::fluid {
 
 /// Puts particles on a square lattice aligned with the region's lower left corner, half a cell off,
-/// and keeps those in the fluid. Where the boundary does not fit the lattice their number is
-/// brought as near to area/dx^2 as can be by leaving out those closest to the boundary; a
-/// particle's volume is then area/N, and the cloud is relaxed before the start.
+/// stretched to fit a whole number of times into a period, and keeps those in the fluid. Where the
+/// boundary does not fit the lattice their number is brought as near to area/dx^2 as can be by
+/// leaving out those closest to the boundary; a particle's volume is then area/N, and the cloud is
+/// relaxed before the start.
 void Fluid::Implementation::fill() {
     const double dx = config.spacing;
     Vec2 lower = config.region[0], upper = config.region[0];
@@ -25,16 +26,19 @@ void Fluid::Implementation::fill() {
         double distance;
     };
     std::vector<Place> places;
-    for (int j = 0; lower.y + (j + 0.5) * dx < upper.y; ++j) {
-        for (int i = 0; lower.x + (i + 0.5) * dx < upper.x; ++i) {
-            const Vec2 x = lower + Vec2{(i + 0.5) * dx, (j + 0.5) * dx};
+    const Vec2 period = grid_.period();
+    const Vec2 apart{period.x > 0 ? period.x / std::round(period.x / dx) : dx,
+                     period.y > 0 ? period.y / std::round(period.y / dx) : dx};
+    for (int j = 0; lower.y + (j + 0.5) * apart.y < upper.y; ++j) {
+        for (int i = 0; lower.x + (i + 0.5) * apart.x < upper.x; ++i) {
+            const Vec2 x = lower + Vec2{(i + 0.5) * apart.x, (j + 0.5) * apart.y};
             if (boundary_.contains(x)) {
                 places.push_back({x, boundary_.distance(x)});
             }
         }
     }
     const double area = boundary_.area();
-    const auto wanted = static_cast<std::size_t>(std::llround(area / (dx * dx)));
+    const auto wanted = static_cast<std::size_t>(std::llround(area / (apart.x * apart.y)));
     const bool fits =
         places.size() == wanted && std::all_of(places.begin(), places.end(), [&](const Place& p) {
             return p.distance > 0.4 * dx;
@@ -85,6 +89,7 @@ void Fluid::Implementation::disturb() {
         particles.x[i] += config.disorder * config.spacing * symmetric();
         particles.y[i] += config.disorder * config.spacing * symmetric();
     }
+    wrap();
     keep_inside();
 }
 

@@ -80,16 +80,19 @@ struct Config {
     double spacing = 0;                   ///< m, between neighbouring particles
     std::vector<Vec2> region;             ///< corners of the cavity, in order round it (either way)
     std::vector<std::vector<Vec2>> holes; ///< corners of what is cut out of it, likewise
-    double density = 1;                   ///< kg/m3
-    double kinematic_viscosity = 0;       ///< m2/s
-    double heat_capacity = 1;             ///< J/(kg K)
-    double conductivity = 0;              ///< W/(m K)
-    double thermal_expansion = 0;         ///< 1/K
-    double reference_temperature = 0;     ///< K, where the buoyancy vanishes
-    Function initial_temperature;         ///< K
-    VectorFunction initial_velocity;      ///< m/s
-    Vec2 gravity;                         ///< m/s2
-    VectorFunction body_force;            ///< m/s2, beside the buoyancy
+    /// Directions in which the region, a rectangle, repeats itself: its two sides across them are
+    /// no walls, and what leaves over one of them comes back over the other.
+    Periodic periodic;
+    double density = 1;               ///< kg/m3
+    double kinematic_viscosity = 0;   ///< m2/s
+    double heat_capacity = 1;         ///< J/(kg K)
+    double conductivity = 0;          ///< W/(m K)
+    double thermal_expansion = 0;     ///< 1/K
+    double reference_temperature = 0; ///< K, where the buoyancy vanishes
+    Function initial_temperature;     ///< K
+    VectorFunction initial_velocity;  ///< m/s
+    Vec2 gravity;                     ///< m/s2
+    VectorFunction body_force;        ///< m/s2, beside the buoyancy
     std::vector<Wall> walls;
     PressureLevel pressure_level = PressureLevel::zero_mean;
     double sound_speed = 0; ///< m/s; 0 adapts it to the flow
@@ -156,6 +159,7 @@ struct Ledger {
     double closure_conduction_abs = 0; ///< J/m, absolute values summed over steps
     double closure_shift = 0;          ///< J/m, given back: correction after the shift, summed
     double closure_shift_abs = 0;      ///< J/m, absolute values summed over steps
+    double closure_momentum_abs = 0;   ///< N s/m, without walls: given back, summed over steps
     std::uint64_t particles_outside = 0; ///< outside the cavity or inside a solid, now
     std::uint64_t wall_hits = 0;         ///< particles put back from beyond a wall since the start
 };

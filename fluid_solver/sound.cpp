@@ -29,7 +29,10 @@ void Fluid::Implementation::level() {
         }
         means_[k] /= compartment_size_[k];
         if (buoyant_ && !paper_) { // the paper's pressure is the whole one
-            hydrostatics_.levels[k] = {means_[k][1], {means_[k][2], means_[k][3]}};
+            const double mean = means_[k][1], reference = config.reference_temperature;
+            hydrostatics_.levels[k] = {
+                {config.periodic.x ? reference : mean, config.periodic.y ? reference : mean},
+                {means_[k][2], means_[k][3]}};
         }
     }
     for_particles(n, config.threads, [&](std::size_t a) {

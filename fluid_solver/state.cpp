@@ -9,7 +9,7 @@ namespace duet::fluid {
 
 namespace {
 
-constexpr std::uint64_t state_mark = 0x3344554c46544455; // layout of the bytes below
+constexpr std::uint64_t state_mark = 0x3444554c46544455; // layout of the bytes below
 
 class Writer {
   public:

@@ -34,6 +34,12 @@ inline Vec2 left(Vec2 a) {
     return {-a.y, a.x};
 }
 
+/// The directions in which a region repeats itself without end.
+struct Periodic {
+    bool x = false, y = false;
+    bool any() const { return x || y; }
+};
+
 /// A general 2 x 2 matrix.
 struct Mat2 {
     double xx = 0, xy = 0, yx = 0, yy = 0;

@@ -56,7 +56,7 @@ void Boundary::add_loop(std::vector<Vec2> corners, bool hole) {
     }
     std::vector<Side>& sides = loops_.emplace_back();
     for (std::size_t i = 0; i < corners.size(); ++i) {
-        sides.push_back({corners[i], corners[(i + 1) % corners.size()], none});
+        sides.push_back({corners[i], corners[(i + 1) % corners.size()], none, false});
     }
 }
 
@@ -95,6 +95,12 @@ void Boundary::assign_walls() {
         const Wall& wall = walls_[w];
         bool found = false;
         const auto take = [&](Side& side) {
+            if (side.seam) {
+                throw SceneError("wall '" + wall.name + "' lies on the side from " + print(side.a)
+                                 + " to " + print(side.b)
+                                 + ", over which the fluid is periodic; let the wall cover "
+                                   "other sides alone");
+            }
             side.wall = static_cast<std::uint32_t>(w);
             found = true;
             check_turning(wall, side);
@@ -177,6 +183,7 @@ void Boundary::add_walls() {
             }
         }
         const std::size_t first_face = faces_.size();
+        first_face_.push_back(first_face);
         const double whole = perimeter(loops_[l]);
         if (e.empty()) {
             keep(loops_[l], 0, whole);
@@ -190,6 +197,9 @@ void Boundary::add_walls() {
             }
         }
         link_sides(first_face);
+        if (l == 0 && periodic_.any()) {
+            close_over_seams(first_face);
+        }
     }
 }
 
@@ -199,10 +209,12 @@ void Boundary::keep(const std::vector<Side>& loop, double from, double to) {
         const double length = norm(side.b - side.a);
         const double p = std::max(from - arc, 0.0) / length;
         const double q = std::min(to - arc, length) / length;
-        if ((q - p) * length > 1e-9 * spacing_) {
+        if (!side.seam && (q - p) * length > 1e-9 * spacing_) {
             const Vec2 t = side.b - side.a;
-            add_side(
-                {p == 0 ? side.a : side.a + p * t, q == 1 ? side.b : side.a + q * t, side.wall});
+            add_side({p == 0 ? side.a : side.a + p * t,
+                      q == 1 ? side.b : side.a + q * t,
+                      side.wall,
+                      false});
         }
         arc += length;
     }

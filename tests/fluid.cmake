@@ -1,7 +1,7 @@
 duet_test(fluid_unit LABEL unit
     SOURCES unit/fluid_kernel.cpp unit/fluid_neighbours.cpp unit/fluid_boundary.cpp unit/fluid_ghosts.cpp
         unit/fluid_operators.cpp unit/fluid_walls.cpp unit/fluid_budget.cpp unit/fluid_pressure.cpp unit/fluid_paper.cpp
-        unit/fluid_state.cpp unit/fluid_twins.cpp
+        unit/fluid_state.cpp unit/fluid_twins.cpp unit/fluid_periodic.cpp
     LIBRARIES duet_fluid_core)
 
 duet_test(fluid_scattered_unit LABEL unit
@@ -11,7 +11,7 @@ duet_test(fluid_scattered_unit LABEL unit
 duet_test(fluid_verification LABEL verification
     SOURCES verification/fluid_slab.cpp verification/fluid_two_layers.cpp verification/fluid_cavity.cpp
         verification/fluid_hot_plate.cpp verification/fluid_stokes_mode.cpp verification/fluid_round.cpp
-        verification/fluid_lid.cpp verification/fluid_channel.cpp
+        verification/fluid_lid.cpp verification/fluid_channel.cpp verification/fluid_periodic.cpp
     LIBRARIES duet_fluid_core)
 
 # Instructions of one particle over one outer step with its inner steps, walls included (28 % of these

@@ -42,7 +42,7 @@ inline Particles cloud(const Boundary& boundary, const Config& config, double di
     }
     for (double y = lower.y + config.spacing / 2; y < upper.y; y += config.spacing) {
         for (double x = lower.x + config.spacing / 2; x < upper.x; x += config.spacing) {
-            const Vec2 place{x + jitter(random), y + jitter(random)};
+            const Vec2 place = boundary.grid().wrapped({x + jitter(random), y + jitter(random)});
             if (boundary.contains(place) && boundary.distance(place) > 0.2 * config.spacing) {
                 places.push_back(place);
             }
