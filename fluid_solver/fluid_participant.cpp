@@ -148,6 +148,9 @@ Config config_from_scene(const v1::Scene& scene, unsigned threads) {
         config.holes.push_back(
             polygon(hole.corners(), hole.has_disc(), hole.disc(), config.spacing));
     }
+    const auto periodic = fluid.periodic();
+    config.periodic = {periodic == v1::Fluid::X || periodic == v1::Fluid::BOTH,
+                       periodic == v1::Fluid::Y || periodic == v1::Fluid::BOTH};
     config.density = fluid.density();
     config.kinematic_viscosity = fluid.kinematic_viscosity();
     config.heat_capacity = fluid.heat_capacity();
@@ -284,6 +287,7 @@ void Participant::fill(v1::Ledger& ledger) const {
     figure["closure_conduction_abs"] = now.closure_conduction_abs;
     figure["closure_shift"] = now.closure_shift;
     figure["closure_shift_abs"] = now.closure_shift_abs;
+    figure["closure_momentum_abs"] = now.closure_momentum_abs;
     figure["particles_outside"] = static_cast<double>(now.particles_outside);
     figure["wall_hits"] = static_cast<double>(now.wall_hits);
     figure["work_from_walls"] = now.work_from_walls;

@@ -201,6 +201,13 @@ void describe_fluid(const v1::Scene& scene, const Estimate& e, std::string& out)
               : !e.heat  ? "left out (no heat)"
                          : "left out (no gravity or no expansion)")
            + "\n";
+    const auto [along_x, along_y] = periodic(fluid);
+    if (along_x || along_y)
+        out += "        periodic along "
+               + std::string(along_x && along_y ? "x and y"
+                             : along_x          ? "x"
+                                                : "y")
+               + ": the region is one period\n";
     for (const v1::Wall& wall : fluid.wall())
         out +=
             "        wall '" + wall.name() + "': " + heat_condition(wall)
@@ -209,7 +216,8 @@ void describe_fluid(const v1::Scene& scene, const Estimate& e, std::string& out)
     for (const v1::Hole& hole : fluid.hole())
         out +=
             "        hole '" + hole.name() + "' of " + number_text(area(outline(hole))) + " m2\n";
-    out += "        all other walls: fixed, no-slip, adiabatic\n";
+    if (!(along_x && along_y) || fluid.hole_size() > 0)
+        out += "        all other walls: fixed, no-slip, adiabatic\n";
 }
 
 /// Roughly the longest explicit step of a body, s; infinite without a limit, and where a mesh file

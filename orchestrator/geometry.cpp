@@ -90,6 +90,24 @@ Polygon outline(const v1::Fluid& fluid) {
     return {fluid.region().begin(), fluid.region().end()};
 }
 
+std::pair<bool, bool> periodic(const v1::Fluid& fluid) {
+    const auto p = fluid.periodic();
+    return {p == v1::Fluid::X || p == v1::Fluid::BOTH, p == v1::Fluid::Y || p == v1::Fluid::BOTH};
+}
+
+std::vector<Piece> seams(const v1::Fluid& fluid, double tolerance) {
+    const auto [along_x, along_y] = periodic(fluid);
+    const Polygon region = outline(fluid);
+    std::vector<Piece> pieces;
+    for (std::size_t i = 0; i < region.size(); ++i) {
+        const Point &a = region[i], &b = region[(i + 1) % region.size()];
+        if ((along_x && std::abs(a.x() - b.x()) <= tolerance)
+            || (along_y && std::abs(a.y() - b.y()) <= tolerance))
+            pieces.push_back({a, b});
+    }
+    return pieces;
+}
+
 Polygon outline(const v1::Hole& hole) {
     if (hole.has_disc())
         return corners(hole.disc());

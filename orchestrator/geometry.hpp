@@ -32,6 +32,12 @@ Polygon corners(const v1::Disc& disc);
 Polygon outline(const v1::Fluid& fluid);
 Polygon outline(const v1::Hole& hole);
 
+/// Whether the cavity repeats itself along x, and along y.
+std::pair<bool, bool> periodic(const v1::Fluid& fluid);
+
+/// The sides of a periodic region that are no walls.
+std::vector<Piece> seams(const v1::Fluid& fluid, double tolerance);
+
 /// Of the room that a body takes, a ring's hole included; empty for a mesh file, which the solid
 /// alone reads.
 Polygon outline(const v1::Body& body);

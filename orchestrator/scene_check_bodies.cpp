@@ -131,6 +131,8 @@ void Checker::check_shape(const v1::Body& body, const std::string& path) {
         check_rectangle(body, path);
     if (mesh_.contains(&body))
         check_mesh(body, mesh_.at(&body), path);
+    if (region_good_)
+        check_clear_of_seams(body, path);
 }
 
 void Checker::check_mesh(const v1::Body& body, const solid::Mesh& mesh, const std::string& path) {

@@ -26,6 +26,7 @@ void Checker::check_fluid() {
     region_good_ = true;
     if (scene_.fluid().spacing() > extent(region_) / 2)
         problem("fluid.spacing", "fluid.spacing is more than half the extent of the region");
+    check_periodic();
     check_size(particles_of(scene_), "fluid particles", "fluid.spacing");
     check_names("fluid.hole", scene_.fluid().hole());
     for (int i = 0; i < scene_.fluid().hole_size(); ++i)
@@ -33,6 +34,74 @@ void Checker::check_fluid() {
     check_names("fluid.wall", scene_.fluid().wall());
     for (int i = 0; i < scene_.fluid().wall_size(); ++i)
         check_wall(scene_.fluid().wall(i), entry("fluid.wall", i));
+}
+
+/// One period is a rectangle, and long enough that no particle sees another one twice.
+void Checker::check_periodic() {
+    const auto [along_x, along_y] = periodic(scene_.fluid());
+    if (!along_x && !along_y)
+        return;
+    double left = region_[0].x(), right = left, low = region_[0].y(), high = low;
+    for (const Point& p : region_) {
+        left = std::min(left, p.x());
+        right = std::max(right, p.x());
+        low = std::min(low, p.y());
+        high = std::max(high, p.y());
+    }
+    if (std::abs((right - left) * (high - low) - area(region_)) > tolerance_ * extent(region_)) {
+        region_good_ = false;
+        return problem("fluid.periodic",
+                       "a periodic fluid needs a rectangle along the axes as its region; give "
+                       "fluid.region the corners of one period");
+    }
+    constexpr double shortest = 6; // spacings: a particle sees 2.6 to either side
+    const double least = shortest * scene_.fluid().spacing() * (1 - 1e-9);
+    if ((along_x && right - left < least) || (along_y && high - low < least))
+        problem("fluid.spacing",
+                "one period of the fluid is shorter than six spacings; refine fluid.spacing, or "
+                "take several periods as fluid.region");
+}
+
+/// A body is moved over a periodic side by the run alone: at the start it lies within one period.
+void Checker::check_clear_of_seams(const v1::Body& body, const std::string& path) {
+    Polygon places = outline(body);
+    if (mesh_.contains(&body))
+        for (const solid::Point& p : mesh_.at(&body).node)
+            places.push_back(point(p.x(), p.y()));
+    for (const Piece& seam : seams(scene_.fluid(), tolerance_))
+        for (const Point& p : places)
+            if (on_piece(p, seam.first, seam.second, tolerance_))
+                return problem(path,
+                               "the body '" + body.name()
+                                   + "' reaches the periodic side of "
+                                     "fluid.region at "
+                                   + at_text(p)
+                                   + "; move it off, or let another part of the fluid be the "
+                                     "period");
+}
+
+/// Whether the wall is none of the sides over which the fluid is periodic.
+bool Checker::check_seams(const v1::Wall& wall, const std::string& path) {
+    const std::vector<Piece> sides = seams(scene_.fluid(), tolerance_);
+    if (wall.around() == "region" && !sides.empty()) {
+        problem(path + ".around",
+                "the wall '" + wall.name()
+                    + "' goes round a region that is periodic; name by 'along' the sides that are "
+                      "walls");
+        return false;
+    }
+    for (const Piece& side : sides)
+        if (wall.along_size() == 2
+            && common_length(wall.along(0), wall.along(1), side.first, side.second, tolerance_)
+                   > tolerance_) {
+            problem(path + ".along",
+                    "the wall '" + wall.name() + "' lies on the side from " + at_text(side.first)
+                        + " to " + at_text(side.second)
+                        + ", over which the fluid is periodic; leave it out, or change "
+                          "fluid.periodic");
+            return false;
+        }
+    return true;
 }
 
 /// The fluid will be able to read it.
@@ -79,6 +148,8 @@ void Checker::check_hole(const v1::Hole& hole, const std::string& path) {
 }
 
 void Checker::check_wall(const v1::Wall& wall, const std::string& path) {
+    if (!check_seams(wall, path))
+        return;
     if (wall.has_temperature() && !is_zero(wall.heat_flux()))
         problem(path + ".temperature",
                 path + " prescribes a temperature and a heat flux; keep one of them");

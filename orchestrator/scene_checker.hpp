@@ -45,6 +45,9 @@ class Checker {
 
     void check_fluid();
     void check_initial_state();
+    void check_periodic();
+    void check_clear_of_seams(const v1::Body& body, const std::string& path);
+    bool check_seams(const v1::Wall& wall, const std::string& path);
     void check_hole(const v1::Hole& hole, const std::string& path);
     void check_wall(const v1::Wall& wall, const std::string& path);
     Polygon outline_of(const std::string& around) const;

@@ -272,6 +272,19 @@ TEST(FluidPeriodic, ABodyThatDriftsWithTheFluidLeavesItAlone) {
     }
 }
 
+TEST(FluidPeriodic, TheLatticeFitsThePeriod) {
+    // 6.7 and 7.6 spacings: seven and eight particles, as far apart over the seam as elsewhere.
+    Config config = closed(rectangle({0, 0}, {0.67, 0.76}), spacing, false);
+    config.periodic = {true, true};
+    const Fluid fluid(config);
+    ASSERT_EQ(fluid.size(), 56u);
+    const Snapshot s = fluid.snapshot();
+    for (std::size_t i = 0; i < 56; ++i) {
+        EXPECT_NEAR(s.position[i].x, 0.67 / 7 * (static_cast<double>(i % 7) + 0.5), 1e-14);
+        EXPECT_NEAR(s.position[i].y, 0.76 / 8 * (static_cast<double>(i / 7) + 0.5), 1e-14);
+    }
+}
+
 TEST(FluidPeriodic, WhatCannotRepeatItselfIsRefused) {
     const auto expect_refused = [](const Config& config, const std::string& with) {
         try {

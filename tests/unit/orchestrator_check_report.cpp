@@ -39,5 +39,20 @@ along = [[0, 0], [4, 0]]
     EXPECT_EQ(report.find("slips"), report.rfind("slips")) << report;
 }
 
+TEST(CheckReport, PeriodicDirectionsAreSaid) {
+    const std::string text = "[time]\nend = 1\n[fluid]\nspacing = 0.1\nregion = [[0, 0], [1, 0], "
+                             "[1, 1], [0, 1]]\ndensity = 1\nkinematic_viscosity = 1\n";
+    const auto report = [&](const std::string& periodic) {
+        return check_report(parse_case(text, "case.toml", {"fluid.periodic=\"" + periodic + "\""}),
+                            1);
+    };
+    EXPECT_EQ(report("none").find("periodic"), std::string::npos);
+    EXPECT_NE(
+        report("y").find("periodic along y: the region is one period\n        all other walls"),
+        std::string::npos);
+    EXPECT_NE(report("both").find("periodic along x and y"), std::string::npos);
+    EXPECT_EQ(report("both").find("walls"), std::string::npos) << "there are none";
+}
+
 } // namespace
 } // namespace duet::orchestrator

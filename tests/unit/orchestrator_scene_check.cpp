@@ -61,6 +61,31 @@ TEST(SceneCheck, Walls) {
               std::string::npos);
 }
 
+TEST(SceneCheck, PeriodicRegions) {
+    expect_one({"fluid.periodic=\"x\""}, "");
+    expect_fault("fluid.periodic=\"z\"", "none, x, y or both");
+    const std::string y = "fluid.periodic=\"y\"", x = "fluid.periodic=\"x\"";
+    EXPECT_NE(problems(good, {y}).find("the wall 'lid' lies on the side from [4, 4] to [0, 4]"),
+              std::string::npos)
+        << problems(good, {y});
+    EXPECT_NE(problems(good, {y}).find("the body 'plate' reaches the periodic side"),
+              std::string::npos)
+        << problems(good, {y});
+    const auto expect = [&](const std::string& change, const std::string& part) {
+        const std::string text = problems(good, {change, x});
+        EXPECT_NE(text.find(part), std::string::npos) << change << " gave: " << text;
+        EXPECT_EQ(text.find('\n'), std::string::npos) << change << " gave more: " << text;
+    };
+    expect("fluid.spacing=0.7", "shorter than six spacings");
+    expect("fluid.region=[[0, 0], [4, 0], [4, 4], [1, 4], [0, 3]]", "needs a rectangle");
+    expect("solid.body[0].rectangle.corner=[0, 0]", "reaches the periodic side");
+    const std::string bare = good.substr(0, good.find("[[fluid.wall]]"));
+    EXPECT_NE(problems(bare + "[[fluid.wall]]\nname = 'all'\naround = 'region'\n", {x})
+                  .find("goes round a region that is periodic"),
+              std::string::npos);
+    EXPECT_EQ(problems(bare, {"fluid.periodic=\"both\""}), "");
+}
+
 TEST(SceneCheck, Probes) {
     expect_fault("probe[0].at=[5, 2]", "lies outside fluid.region");
     expect_fault("probe[0].at=[2, 0.5]", "lies in the body 'plate'");
