@@ -34,11 +34,12 @@ Solid::Solid(std::vector<BodyConfig> bodies, const std::vector<Point>& region) {
 /// The fluid answers the velocity that it was told with the pressure Z v. Of a vibration with a
 /// period between one and two windows that answer has the wrong sign: it feeds its energy by up to
 /// 0.5 Z S/M (S the body's wet length, M its mass). A stiffness damping b takes b w^2, w >= pi over
-/// the window. This b is pi^2 times what balances the two where the whole body swings, for surfaces
-/// swing more (docs/theory-coupling.md).
+/// the window. This b is a hundred times what balances the two where the whole body swings, for
+/// surfaces swing more, and the layer beside them answers more than Z v
+/// (docs/theory-coupling.md).
 void Solid::damp_exchange(double length, double impedance) {
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
-        bodies_[b].set_exchange_damping(0.5 * impedance * wet_length_[b] / bodies_[b].mass()
+        bodies_[b].set_exchange_damping(5 * impedance * wet_length_[b] / bodies_[b].mass()
                                         * length * length);
     }
 }
