@@ -39,8 +39,8 @@ Solid::Solid(std::vector<BodyConfig> bodies, const std::vector<Point>& region) {
 /// (docs/theory-coupling.md).
 void Solid::damp_exchange(double length, double impedance) {
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
-        bodies_[b].set_exchange_damping(5 * impedance * wet_length_[b] / bodies_[b].mass()
-                                        * length * length);
+        bodies_[b].set_exchange_damping(5 * impedance * wet_length_[b] / bodies_[b].mass() * length
+                                        * length);
     }
 }
 
