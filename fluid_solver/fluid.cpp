@@ -245,7 +245,7 @@ void Fluid::Implementation::begin_step(double dt, double elapsed, const Motion& 
         keep_inside();
     }
     const Stamp stamp(phase_seconds_[sorting]);
-    particles.sort(grid_);
+    particles.sort(grid_, config.threads);
 }
 
 /// To its end, with the shift.

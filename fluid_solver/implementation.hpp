@@ -120,12 +120,20 @@ class Fluid::Implementation {
     template <class Term>
     auto sum(const Term& term) const {
         using Number = decltype(term(std::size_t{}));
+        static thread_local std::vector<Number> parts; // keeps its room from call to call
+        parts.resize(chunks_of(particles.size()));
+        std::vector<Number>& shared = parts; // this thread's, for all
+        for_chunks(particles.size(),
+                   config.threads,
+                   [&](std::size_t c, std::size_t first, std::size_t last) {
+                       Number part{};
+                       for (std::size_t a = first; a < last; ++a) {
+                           part += term(a);
+                       }
+                       shared[c] = part;
+                   });
         Number total{};
-        for (std::size_t first = 0; first < particles.size(); first += chunk_size) {
-            Number part{};
-            for (std::size_t a = first; a < std::min(particles.size(), first + chunk_size); ++a) {
-                part += term(a);
-            }
+        for (const Number& part : parts) {
             total += part;
         }
         return total;

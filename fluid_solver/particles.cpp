@@ -1,5 +1,7 @@
 #include "fluid_solver/particles.hpp"
 
+#include "fluid_solver/chunks.hpp"
+
 #include <cmath>
 
 namespace duet::fluid {
@@ -36,23 +38,26 @@ void Particles::resize(std::size_t n) {
 namespace {
 
 template <class T>
-void reorder(std::vector<T>& values, std::vector<T>& spare, const std::vector<std::uint32_t>& to) {
+void reorder(std::vector<T>& values,
+             std::vector<T>& spare,
+             const std::vector<std::uint32_t>& to,
+             int threads) {
     spare.resize(values.size());
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        spare[to[i]] = values[i];
-    }
+    for_particles(values.size(), threads, [&](std::size_t i) { spare[to[i]] = values[i]; });
     values.swap(spare);
 }
 
 } // namespace
 
-void Particles::sort(const CellGrid& grid) {
+void Particles::sort(const CellGrid& grid, int threads) {
     const std::size_t n = size();
     cell_.resize(n);
     target_.resize(n);
     cell_start_.assign(grid.size() + 1, 0);
-    for (std::size_t i = 0; i < n; ++i) {
+    for_particles(n, threads, [&](std::size_t i) {
         cell_[i] = static_cast<std::uint32_t>(grid.index(position(i)));
+    });
+    for (std::size_t i = 0; i < n; ++i) {
         ++cell_start_[cell_[i] + 1];
     }
     for (std::size_t c = 0; c < grid.size(); ++c) {
@@ -66,11 +71,11 @@ void Particles::sort(const CellGrid& grid) {
         cell_start_[c] = cell_start_[c - 1];
     }
     cell_start_[0] = 0;
-    reorder(x, spare_, target_);
-    reorder(y, spare_, target_);
-    reorder(fields, spare_fields_, target_);
-    reorder(identity, spare_identity_, target_);
-    reorder(compartment, spare_compartment_, target_);
+    reorder(x, spare_, target_, threads);
+    reorder(y, spare_, target_, threads);
+    reorder(fields, spare_fields_, target_, threads);
+    reorder(identity, spare_identity_, target_, threads);
+    reorder(compartment, spare_compartment_, target_, threads);
 }
 
 } // namespace duet::fluid

@@ -121,7 +121,7 @@ class Particles {
     void resize(std::size_t n);
 
     /// Sorts by cell, keeping the order within a cell. O(n); allocates only at the first call.
-    void sort(const CellGrid& grid);
+    void sort(const CellGrid& grid, int threads = 1);
 
     /// First particle of each cell after sort(); grid.size() + 1 entries.
     const std::vector<std::uint32_t>& cell_start() const { return cell_start_; }
