@@ -51,18 +51,18 @@ std::string text_of(const toml::node& node) {
     return out.str();
 }
 
-/// The values of one override: one, or those of its list.
-std::vector<std::string> values_of(const std::string& key, const std::string& value) {
+/// The values of an override that is a list of what the key takes; nothing if it is one value.
+std::vector<std::string> listed_values(const std::string& key, const std::string& value) {
     const Field* field = field_at(key);
     toml::table parsed;
     try {
         parsed = toml::parse("value = " + value);
     } catch (const toml::parse_error&) {
-        return {value}; // read_case() says what is wrong with it
+        return {}; // read_case() says what is wrong with it
     }
     const toml::node& node = *parsed.get("value");
     if (!field || depth_of(node) <= depth_of_one(*field, key.back() == ']'))
-        return {value};
+        return {};
     std::vector<std::string> values;
     for (const toml::node& one : *node.as_array())
         values.push_back(text_of(one));
@@ -98,7 +98,10 @@ std::vector<Variant> variants_of(const std::vector<std::string>& overrides) {
         if (equals == std::string::npos || equals == 0)
             throw std::invalid_argument("--set " + text + ": expected KEY=VALUE");
         const std::string key = text.substr(0, equals);
-        const std::vector<std::string> values = values_of(key, text.substr(equals + 1));
+        std::vector<std::string> values = listed_values(key, text.substr(equals + 1));
+        const bool varies = !values.empty(); // also a list of one: its table goes with others
+        if (!varies)
+            values = {text.substr(equals + 1)};
         for (const auto& [varied, value] : variants.front().varied)
             if (varied == key)
                 throw std::invalid_argument("--set " + text + ": the key varies already");
@@ -107,7 +110,7 @@ std::vector<Variant> variants_of(const std::vector<std::string>& overrides) {
             for (const std::string& value : values) {
                 Variant& next = longer.emplace_back(variant);
                 next.overrides.push_back(key + "=" + value);
-                if (values.size() > 1)
+                if (varies)
                     next.varied.emplace_back(key, value);
             }
         variants = std::move(longer);

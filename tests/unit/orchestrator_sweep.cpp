@@ -41,6 +41,8 @@ TEST(Sweep, WhatIsAListByItselfIsOneValue) {
     EXPECT_EQ(variants_of({"check[0].at=[1, 2]"}).size(), 1u);
     EXPECT_EQ(variants_of({"solid.body[0].density=[1, 2]"}).size(), 2u);
     EXPECT_EQ(variants_of({}).size(), 1u);
+    EXPECT_EQ(variants_of({"fluid.spacing=[0.2]"}).front().varied.size(), 1u) << "a list of one";
+    EXPECT_TRUE(variants_of({"fluid.spacing=0.2"}).front().varied.empty());
     EXPECT_THROW(variants_of({"fluid.spacing"}), std::invalid_argument);
 }
 
