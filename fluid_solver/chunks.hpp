@@ -18,7 +18,8 @@ inline std::size_t chunks_of(std::size_t n) {
 template <class Body>
 void for_chunks(std::size_t n, int threads, const Body& body) {
     const auto chunks = static_cast<long>(chunks_of(n));
-#pragma omp parallel for schedule(dynamic, 2) num_threads(threads) if (threads > 1)
+    // Chunks are handed out in pairs: of one pair a second thread would only wait for the end.
+#pragma omp parallel for schedule(dynamic, 2) num_threads(threads) if (threads > 1 && chunks > 2)
     for (long c = 0; c < chunks; ++c) {
         const std::size_t first = static_cast<std::size_t>(c) * chunk_size;
         body(static_cast<std::size_t>(c), first, std::min(n, first + chunk_size));
