@@ -73,7 +73,12 @@ Wall wall_of(const v1::Wall& wall, const v1::Fluid& fluid) {
 
 /// What the file holds, in place of the initial fields.
 void start_from(const std::string& file, Config& config) {
-    const auto state = std::make_shared<ScatteredState>(file);
+    Vec2 lower = config.region[0], upper = lower;
+    for (const Vec2 c : config.region) {
+        lower = {std::min(lower.x, c.x), std::min(lower.y, c.y)};
+        upper = {std::max(upper.x, c.x), std::max(upper.y, c.y)};
+    }
+    const auto state = std::make_shared<ScatteredState>(file, config.periodic, lower, upper);
     const auto take = [&](ScatteredState::Field field, Function& initial) {
         if (state->has(field)) {
             initial = Function(

@@ -53,9 +53,42 @@ double number(const std::string& word, const std::string& where) {
 
 } // namespace
 
-ScatteredState::ScatteredState(const std::filesystem::path& file) {
+ScatteredState::ScatteredState(const std::filesystem::path& file,
+                               Periodic periodic,
+                               Vec2 lower,
+                               Vec2 upper) {
     read(file);
     sort(file);
+    if (periodic.any()) {
+        repeat(periodic, lower, upper);
+        sort(file);
+    }
+}
+
+/// Adds the images of the points that planes near a periodic side see over it.
+void ScatteredState::repeat(Periodic periodic, Vec2 lower, Vec2 upper) {
+    const double margin = 3 * cell_;
+    const Vec2 period = upper - lower;
+    const std::size_t count = points_.size();
+    for (std::size_t i = 0; i < count; ++i) {
+        for (const int along_x : {-1, 0, 1}) {
+            for (const int along_y : {-1, 0, 1}) {
+                const Vec2 p = points_[i] + Vec2{along_x * period.x, along_y * period.y};
+                const bool meant = (along_x == 0 || periodic.x) && (along_y == 0 || periodic.y)
+                                   && (along_x != 0 || along_y != 0);
+                const bool near = p.x > lower.x - margin && p.x < upper.x + margin
+                                  && p.y > lower.y - margin && p.y < upper.y + margin;
+                if (meant && near) {
+                    points_.push_back(p);
+                    for (std::vector<double>& values : values_) {
+                        if (!values.empty()) {
+                            values.push_back(values[i]);
+                        }
+                    }
+                }
+            }
+        }
+    }
 }
 
 void ScatteredState::read(const std::filesystem::path& file) {

@@ -18,8 +18,12 @@ class ScatteredState {
 
     /// A CSV file whose first line that is no comment (#) names its columns, in quotes or not: x
     /// and y (m), and any of the fields by their names above; other columns are left out. Throws
-    /// std::invalid_argument with file, line, and what was expected.
-    explicit ScatteredState(const std::filesystem::path& file);
+    /// std::invalid_argument with file, line, and what was expected. The points lie in the region
+    /// from `lower` to `upper`, which repeats itself along `periodic`.
+    explicit ScatteredState(const std::filesystem::path& file,
+                            Periodic periodic = {},
+                            Vec2 lower = {},
+                            Vec2 upper = {});
 
     bool has(Field field) const { return !values_[field].empty(); }
 
@@ -31,6 +35,7 @@ class ScatteredState {
   private:
     void read(const std::filesystem::path& file);
     void sort(const std::filesystem::path& file);
+    void repeat(Periodic periodic, Vec2 lower, Vec2 upper);
     double nearest(Field field, Vec2 x) const;
     int column(double x) const;
     int row(double y) const;

@@ -48,6 +48,29 @@ TEST(FluidScatteredState, LinearFieldsAreExactInsideAndBeyond) {
     }
 }
 
+TEST(FluidScatteredState, PeriodicFieldsAreSmoothOverTheSides) {
+    const auto T = [](double x, double y) {
+        return std::sin(2 * M_PI * x + 1) + std::cos(2 * M_PI * y + 1);
+    };
+    const File file(scattered(2000, T));
+    const ScatteredState state(file.path, {true, true}, {0, 0}, {1, 1});
+    const ScatteredState along_x(file.path, {true, false}, {0, 0}, {1, 1});
+    // Root mean squares along lines; the largest errors are those of single gaps between points.
+    const auto error = [&](const ScatteredState& of, double y) {
+        double squares = 0;
+        for (double x = 0; x < 1; x += 0.01) {
+            const double e = of.at(ScatteredState::temperature, {x, y}) - T(x, y);
+            squares += e * e;
+        }
+        return std::sqrt(squares / 100);
+    };
+    const double inside =
+        0.25 * (error(state, 0.21) + error(state, 0.43) + error(state, 0.64) + error(state, 0.87));
+    EXPECT_LT(error(state, 0), 1.5 * inside);
+    EXPECT_LT(error(state, 1), 1.5 * inside);
+    EXPECT_GT(error(along_x, 1), 2 * inside) << "else a closed side would do as well";
+}
+
 TEST(FluidScatteredState, CurvedFieldsFollowThePoints) {
     const auto T = [](double x, double y) { return std::sin(3 * x) * std::cos(2 * y); };
     const auto error = [&](int count) {
