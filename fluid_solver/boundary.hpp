@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -123,6 +124,27 @@ class Boundary {
         double foot = 0;
     };
     Nearest nearest(Vec2 x) const;
+
+    /// Where a point crosses a segment from the fluid's side.
+    struct Crossing {
+        std::uint32_t segment = none;
+        double along = 0; ///< of the segment, 0..1: the foot of the point's end, or the next end
+        double depth = 0; ///< m, of the point's end behind the segment
+        Vec2 shift;       ///< from the segment to its image that was crossed; else zero
+    };
+    /// The first segment that a point crosses on its straight way between `from` and `to`, while
+    /// each interface node goes straight from its place in `before` to its present one. Sees the
+    /// segments within the support of `to`.
+    std::optional<Crossing> first_crossing(Vec2 from, Vec2 to, std::span<const Vec2> before) const;
+    /// The place of a point of a segment, now or with the interface nodes at `before`.
+    Vec2 place_on(const Segment& segment, double along) const {
+        return (1 - along) * segment.a + along * segment.b;
+    }
+    Vec2 place_on(const Segment& segment, double along, std::span<const Vec2> before) const;
+    /// How far an image of a face is from the face itself; zero for the face.
+    Vec2 image_shift(const Face& face) const { return face.a - segments_[face.first].a; }
+    /// A segment's name for a message: "wall 'hot'", "the interface of 'beam'".
+    std::string name(const Segment& segment) const;
 
     /// Whether x lies in the fluid, by the parity of crossings. O(faces).
     bool contains(Vec2 x) const;

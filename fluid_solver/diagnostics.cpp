@@ -28,7 +28,8 @@ Ledger Fluid::Implementation::ledger() const {
     l.kinetic_energy = kinetic_energy();
     l.momentum = momentum() - initial_momentum_;
     l.mechanical_residual = l.kinetic_energy - initial_kinetic_energy_ - l.work_from_interface
-                            - l.work_from_walls - l.body_force_work + l.viscous_loss;
+                            - l.work_from_walls - l.body_force_work + l.viscous_loss
+                            + l.wall_hit_loss;
     const double since = time - mark_.time;
     if (since > 0) {
         l.force_on_solids = (1 / since) * (mark_.impulse - l.impulse_from_interface);

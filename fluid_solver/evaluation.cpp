@@ -93,13 +93,28 @@ void drop_hidden(const std::vector<Contact>& contacts, Neighbours& near) {
     }
 }
 
-/// The part of a particle's shift that keeps it off the walls: -0.2 (0.3 dx - d1)+ n.
+/// The part of a particle's shift that keeps it off the walls: -0.2 (0.3 dx - d1)+ n; before a
+/// corner that juts out, where no wall has its foot point, off the corner likewise. (Without that,
+/// what slides along a body's side goes round its corner as close as it likes, and into it.)
 Vec2 push_off(const std::vector<Contact>& contacts, double spacing) {
-    Vec2 push;
+    Vec2 push, corner;
+    double to_wall = spacing, to_corner = spacing;
     for (const Contact& contact : contacts) {
         if (contact.on_wall()) {
             push -= wall_push(contact.distance, spacing) * contact.normal;
+            to_wall = std::min(to_wall, contact.distance);
+            continue;
         }
+        const double beyond = std::max(-contact.before(), -contact.after());
+        const double distance = std::hypot(contact.distance, beyond);
+        if (distance < to_corner) {
+            to_corner = distance;
+            corner = contact.distance * contact.normal
+                     + (contact.before() < 0 ? beyond : -beyond) * contact.tangent;
+        }
+    }
+    if (to_corner < to_wall) {
+        push -= (wall_push(to_corner, spacing) / to_corner) * corner;
     }
     return push;
 }

@@ -241,8 +241,9 @@ void Fluid::Implementation::begin_step(double dt, double elapsed, const Motion& 
     {
         const Stamp stamp(phase_seconds_[moving]);
         move(0.5 * dt, false);
+        interface_before_ = interface_position_;
         place_interface(elapsed + 0.5 * dt, motion);
-        keep_inside();
+        hold_off_walls({time + elapsed + 0.5 * dt, 0.5 * dt, false});
     }
     const Stamp stamp(phase_seconds_[sorting]);
     particles.sort(grid_, config.threads);
@@ -252,8 +253,9 @@ void Fluid::Implementation::begin_step(double dt, double elapsed, const Motion& 
 void Fluid::Implementation::finish_step(double dt, double elapsed, const Motion& motion) {
     const Stamp stamp(phase_seconds_[moving]);
     move(0.5 * dt, true);
+    interface_before_ = interface_position_;
     place_interface(elapsed + dt, motion);
-    keep_inside();
+    hold_off_walls({time + elapsed + dt, 0.5 * dt, true});
     level();
     measure();
     adapt_sound_speed();
@@ -303,11 +305,16 @@ void Fluid::Implementation::put_interface() {
     boundary_.set_values(interface_velocity_, interface_acceleration_, interface_temperature_);
 }
 
+Vec2 Fluid::Implementation::way(std::size_t a, double dt, bool with_shift) const {
+    const Vec2 flow{particles.fields[a].u, particles.fields[a].v};
+    return dt * flow + (with_shift ? evaluation_.shift[a] : Vec2{});
+}
+
 void Fluid::Implementation::move(double dt, bool with_shift) {
     for_particles(particles.size(), config.threads, [&](std::size_t a) {
-        const Vec2 shift = with_shift ? evaluation_.shift[a] : Vec2{};
-        particles.x[a] += dt * particles.fields[a].u + shift.x;
-        particles.y[a] += dt * particles.fields[a].v + shift.y;
+        const Vec2 gone = way(a, dt, with_shift);
+        particles.x[a] += gone.x;
+        particles.y[a] += gone.y;
     });
     wrap();
 }
@@ -326,38 +333,6 @@ void Fluid::Implementation::put(std::size_t a, Vec2 place) {
     const Vec2 x = grid_.wrapped(place);
     particles.x[a] = x.x;
     particles.y[a] = x.y;
-}
-
-/// Puts a particle that has crossed a wall back to a tenth of a spacing before it and takes away
-/// its velocity into the wall; counts it.
-void Fluid::Implementation::keep_inside() {
-    const double clearance = 0.1 * config.spacing;
-    hits_.assign(chunks_of(particles.size()), 0);
-    for_chunks(
-        particles.size(), config.threads, [&](std::size_t c, std::size_t first, std::size_t last) {
-            for (std::size_t a = first; a < last; ++a) {
-                if (!boundary_.near(particles.position(a))) {
-                    continue;
-                }
-                for (int corner = 0; corner < 3; ++corner) {
-                    const auto wall = boundary_.nearest(particles.position(a));
-                    if (wall.face == nullptr || wall.distance > 0) {
-                        break;
-                    }
-                    ++hits_[c];
-                    const Vec2 n = wall.face->normal;
-                    const Lanes moving = boundary_.at(*wall.face, wall.foot).value;
-                    Fields& f = particles.fields[a];
-                    put(a, wall.point - clearance * n);
-                    const double into = std::max(0.0, dot({f.u - moving[0], f.v - moving[1]}, n));
-                    f.u -= into * n.x;
-                    f.v -= into * n.y;
-                }
-            }
-        });
-    for (const std::uint32_t hits : hits_) {
-        totals_.wall_hits += hits;
-    }
 }
 
 void Fluid::Implementation::evaluate(double dt) {

@@ -192,7 +192,7 @@ void Participant::configure(const v1::Configure& configure,
     scene_ = configure.scene();
     std::vector<Chain> core_chains;
     for (const auto& chain : chains) {
-        core_chains.push_back({chain.nodes, chain.closed, chain.insulated});
+        core_chains.push_back({chain.nodes, chain.closed, chain.insulated, chain.name});
     }
     unpack(start, start_);
     reported([&] {
@@ -295,6 +295,7 @@ void Participant::fill(v1::Ledger& ledger) const {
     figure["closure_momentum_abs"] = now.closure_momentum_abs;
     figure["particles_outside"] = static_cast<double>(now.particles_outside);
     figure["wall_hits"] = static_cast<double>(now.wall_hits);
+    figure["wall_hit_loss"] = now.wall_hit_loss;
     figure["work_from_walls"] = now.work_from_walls;
     figure["body_force_work"] = now.body_force_work;
     if (scene_.fluid().formulation()

@@ -73,6 +73,7 @@ class Fluid::Implementation {
     void disturb();
     void relax();
     void find_compartments();
+    void put_inside();
 
     // paper_step.cpp
     void paper_step(double dt, double elapsed, const Motion& motion);
@@ -84,10 +85,10 @@ class Fluid::Implementation {
     void follow_interface(const Motion& motion);
     void place_interface(double elapsed, const Motion& motion);
     void put_interface();
+    Vec2 way(std::size_t a, double dt, bool with_shift) const;
     void move(double dt, bool with_shift);
     void wrap();
     void put(std::size_t a, Vec2 place);
-    void keep_inside();
     void evaluate(double dt);
     void begin_step(double dt, double elapsed, const Motion& motion);
     void finish_step(double dt, double elapsed, const Motion& motion);
@@ -96,6 +97,31 @@ class Fluid::Implementation {
     void advance_temperature(double dt);
     void correct_fields(double dt);
     void start();
+
+    // crossing.cpp
+    /// The half of a step that has just been made.
+    struct HalfStep {
+        double end;    ///< s
+        double length; ///< s
+        bool with_shift;
+    };
+    /// A particle that would have crossed a wall and is held off, and its speed into the wall.
+    struct Touch {
+        std::size_t particle;
+        Boundary::Crossing at;
+        double into; ///< m/s
+    };
+    /// Of the particles of a chunk.
+    struct Held {
+        std::vector<Touch> touches;
+        std::optional<Touch> escaped; ///< the first one that could not be held off
+    };
+    void hold_off_walls(const HalfStep& half);
+    void hold_off(std::size_t a, const HalfStep& half, double wall_way, Held& held);
+    void slow_approach(std::size_t a, const HalfStep& half, const Boundary::Nearest& wall);
+    bool put_before(std::size_t a, const Boundary::Crossing& crossing);
+    void book_touch(const Touch& touch);
+    [[noreturn]] void report_escape(const Touch& escaped, double now) const;
 
     // booking.cpp
     Vec2 body_force(std::size_t a) const;
@@ -169,8 +195,8 @@ class Fluid::Implementation {
         Vec2 impulse;
     };
     Mark mark_;
-    Ledger totals_;                   ///< what accumulates: exchanges, closure, wall hits
-    std::vector<std::uint32_t> hits_; ///< by chunk
+    Ledger totals_;          ///< what accumulates: exchanges, closure, wall hits
+    std::vector<Held> held_; ///< by chunk
     /// Of the particles of a chunk.
     struct Extremes {
         double speed2 = 0, lowest = 1e300, highest = -1e300;
@@ -184,6 +210,7 @@ class Fluid::Implementation {
     std::vector<Vec2> given_force_;        ///< m/s2, by particle; only where there is one
     std::vector<double> wall_heat_, interface_heat_;
     std::vector<Vec2> interface_position_, interface_velocity_, interface_acceleration_;
+    std::vector<Vec2> interface_before_; ///< m, half a step ago
     std::vector<double> interface_temperature_;
     std::array<double, 8> phase_seconds_{};
 };

@@ -90,7 +90,20 @@ void Fluid::Implementation::disturb() {
         particles.y[i] += config.disorder * config.spacing * symmetric();
     }
     wrap();
-    keep_inside();
+    put_inside();
+}
+
+/// Puts what lies behind a wall to a tenth of a spacing before it; in a corner, before both sides.
+void Fluid::Implementation::put_inside() {
+    for_particles(particles.size(), config.threads, [&](std::size_t a) {
+        for (int side = 0; side < 2 && boundary_.near(particles.position(a)); ++side) {
+            const auto wall = boundary_.nearest(particles.position(a));
+            if (wall.face == nullptr || wall.distance > 0) {
+                break;
+            }
+            put(a, wall.point - 0.1 * config.spacing * wall.face->normal);
+        }
+    });
 }
 
 /// Evens out the cloud by shifting alone.
@@ -100,7 +113,7 @@ void Fluid::Implementation::relax() {
         particles.sort(grid_);
         evaluation_.run(particles, grid_, boundary_, {dx, volume, 0, 0, 0.3 * dx * dx, false});
         move(0, true);
-        keep_inside();
+        put_inside();
     }
 }
 

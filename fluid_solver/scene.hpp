@@ -108,6 +108,7 @@ struct Chain {
     std::vector<std::uint32_t> nodes;
     bool closed = false;
     bool insulated = false; ///< no heat passes
+    std::string name = {};  ///< of the body, for messages
     std::size_t segments() const { return closed ? nodes.size() : nodes.size() - 1; }
 };
 
@@ -161,7 +162,8 @@ struct Ledger {
     double closure_shift_abs = 0;      ///< J/m, absolute values summed over steps
     double closure_momentum_abs = 0;   ///< N s/m, without walls: given back, summed over steps
     std::uint64_t particles_outside = 0; ///< outside the cavity or inside a solid, now
-    std::uint64_t wall_hits = 0;         ///< particles put back from beyond a wall since the start
+    std::uint64_t wall_hits = 0;         ///< particles that were held off a wall since the start
+    double wall_hit_loss = 0;            ///< J/m, kinetic energy that they lost
 };
 
 /// A named wall, over the last window.

@@ -219,6 +219,7 @@ InterfaceSize encode_start(const Stamp& stamp,
         to.mutable_node()->Assign(chain.nodes.begin(), chain.nodes.end());
         to.set_closed(chain.closed);
         to.set_insulated(chain.insulated);
+        to.set_name(chain.name);
     }
     return size;
 }
@@ -233,8 +234,10 @@ InterfaceSize decode_start(const v1::ToPeer& message,
     take_motion(subject, in.temperature().size() / sizeof(double), in, start);
     chains.clear();
     for (const v1::Chain& chain : in.chain())
-        chains.push_back(
-            {{chain.node().begin(), chain.node().end()}, chain.closed(), chain.insulated()});
+        chains.push_back({{chain.node().begin(), chain.node().end()},
+                          chain.closed(),
+                          chain.insulated(),
+                          chain.name()});
     return check_chains(subject, chains, start.nodes());
 }
 

@@ -33,6 +33,7 @@ struct Chain {
     std::vector<std::uint32_t> nodes;
     bool closed = false;
     bool insulated = false; ///< no heat passes: the heat flow there is zero
+    std::string name = {};  ///< of the body, for messages; may be empty
     std::size_t segments() const { return closed ? nodes.size() : nodes.size() - 1; }
 };
 

@@ -76,7 +76,7 @@ void Participant::configure(const v1::Configure& configure,
 
     for (const Interface::Chain& chain : solid_->interface().chain) {
         const Body& body = solid_->bodies()[solid_->interface().node[chain.node[0]].body];
-        chains.push_back({chain.node, chain.closed, body.config().insulated});
+        chains.push_back({chain.node, chain.closed, body.config().insulated, body.config().name});
     }
     fill(start);
     ready.set_stable_step(longest_window());

@@ -26,7 +26,7 @@ InterfaceLoad load() {
 }
 
 std::vector<Chain> triangle() {
-    return {{{0, 1, 2}, true}};
+    return {{{0, 1, 2}, true, false, "wing"}};
 }
 
 v1::ToPeer motion_message() {
@@ -107,6 +107,7 @@ TEST(InterfaceCodec, StartCarriesTheChains) {
     ASSERT_EQ(chains.size(), 1U);
     EXPECT_EQ(chains[0].nodes, triangle()[0].nodes);
     EXPECT_TRUE(chains[0].closed);
+    EXPECT_EQ(chains[0].name, "wing");
     EXPECT_EQ(received.time, 0);
 }
 
