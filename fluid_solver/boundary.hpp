@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -141,6 +142,14 @@ class Boundary {
         return (1 - along) * segment.a + along * segment.b;
     }
     Vec2 place_on(const Segment& segment, double along, std::span<const Vec2> before) const;
+    /// The narrowest gap, below 1.25 spacings, between a place of the boundary and what lies
+    /// before it and does not hang together with it nearby; either side is the interface's.
+    struct Gap {
+        double width = std::numeric_limits<double>::infinity(); ///< m
+        const Segment* opposite = nullptr;
+    };
+    /// The gap before the start of each segment. `gaps` is overwritten.
+    void find_gaps(std::vector<Gap>& gaps) const;
     /// How far an image of a face is from the face itself; zero for the face.
     Vec2 image_shift(const Face& face) const { return face.a - segments_[face.first].a; }
     /// A segment's name for a message: "wall 'hot'", "the interface of 'beam'".
@@ -182,6 +191,15 @@ class Boundary {
         Vec2 place, along;
         std::uint32_t wall;
     };
+
+    // contact.cpp
+    struct Arcs {
+        std::vector<std::uint32_t> chain; ///< of each interface segment
+        std::vector<double> start;        ///< m, along its chain
+        std::vector<double> length;       ///< m, of each chain
+    };
+    Arcs arcs() const;
+    double way_along(const Arcs& arcs, std::uint32_t j, const Face& face, double foot) const;
 
     // walls.cpp
     void add_loop(std::vector<Vec2> corners, bool hole);

@@ -72,6 +72,7 @@ Fluid::Implementation::Implementation(const Config& c,
     for (std::size_t w = 0; w < config.walls.size(); ++w) {
         walls.push_back({config.walls[w].name, boundary_.wall_length()[w], 0, 0, {}, 0});
     }
+    measure_gaps();
     fill();
     closure_ = Closure(compartments, config.threads);
     compartment_size_.assign(compartments, 0);
@@ -255,6 +256,7 @@ void Fluid::Implementation::finish_step(double dt, double elapsed, const Motion&
     move(0.5 * dt, true);
     interface_before_ = interface_position_;
     place_interface(elapsed + dt, motion);
+    check_gaps(time + elapsed + dt);
     hold_off_walls({time + elapsed + dt, 0.5 * dt, true});
     level();
     measure();

@@ -123,6 +123,10 @@ class Fluid::Implementation {
     void book_touch(const Touch& touch);
     [[noreturn]] void report_escape(const Touch& escaped, double now) const;
 
+    // contact.cpp
+    void measure_gaps();
+    void check_gaps(double now);
+
     // booking.cpp
     Vec2 body_force(std::size_t a) const;
     void book_body_force(double dt);
@@ -211,6 +215,8 @@ class Fluid::Implementation {
     std::vector<double> wall_heat_, interface_heat_;
     std::vector<Vec2> interface_position_, interface_velocity_, interface_acceleration_;
     std::vector<Vec2> interface_before_; ///< m, half a step ago
+    std::vector<Boundary::Gap> gaps_;
+    double least_gap_ = 0; ///< m, that the boundary may keep open
     std::vector<double> interface_temperature_;
     std::array<double, 8> phase_seconds_{};
 };

@@ -1,6 +1,6 @@
 duet_test(fluid_unit LABEL unit
     SOURCES unit/fluid_kernel.cpp unit/fluid_neighbours.cpp unit/fluid_boundary.cpp unit/fluid_ghosts.cpp
-        unit/fluid_operators.cpp unit/fluid_walls.cpp unit/fluid_crossing.cpp unit/fluid_budget.cpp unit/fluid_pressure.cpp unit/fluid_paper.cpp
+        unit/fluid_operators.cpp unit/fluid_walls.cpp unit/fluid_crossing.cpp unit/fluid_contact.cpp unit/fluid_budget.cpp unit/fluid_pressure.cpp unit/fluid_paper.cpp
         unit/fluid_state.cpp unit/fluid_twins.cpp unit/fluid_periodic.cpp
     LIBRARIES duet_fluid_core)
 
