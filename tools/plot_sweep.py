@@ -13,6 +13,7 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+from matplotlib.ticker import LogLocator, NullFormatter
 
 from run_data import STYLE, fail
 
@@ -97,6 +98,10 @@ def main():
                     panel.annotate(text, (x, y), textcoords="offset points", xytext=(4, 4), fontsize=7)
             panel.set_title(check[len(ERROR):].split(";")[0], fontsize=9)
             panel.set_xlabel("CPU seconds")
+            for axis in (panel.xaxis, panel.yaxis):
+                axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+                axis.set_major_formatter("{x:g}")
+                axis.set_minor_formatter(NullFormatter())
         for panel in list(panels.flat)[len(checks):]:
             panel.axis("off")
         panels[0][0].set_ylabel("error")
