@@ -96,7 +96,7 @@ def main():
                 panel.loglog(cost, error, "o-", label=label)
                 for x, y, text in zip(cost, error, value):
                     panel.annotate(text, (x, y), textcoords="offset points", xytext=(4, 4), fontsize=7)
-            panel.set_title(check[len(ERROR):].split(";")[0], fontsize=9)
+            panel.set_title(check[len(ERROR):], fontsize=9)
             panel.set_xlabel("CPU seconds")
             for axis in (panel.xaxis, panel.yaxis):
                 axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
