@@ -13,7 +13,7 @@ std::string text_of(const v1::Version& version) {
 v1::Version version() {
     v1::Version version;
     version.set_major(2);
-    version.set_minor(0);
+    version.set_minor(1);
     return version;
 }
 

@@ -56,7 +56,7 @@ TEST(Session, RefusesAnotherMajorVersion) {
     const Event event = stage.next();
     EXPECT_EQ(event.kind, Kind::refused);
     EXPECT_EQ(event.role, solid);
-    EXPECT_NE(event.text.find("puppet speaks protocol 3.0, the orchestrator speaks 2.0"),
+    EXPECT_NE(event.text.find("puppet speaks protocol 3.0, the orchestrator speaks 2.1"),
               std::string::npos)
         << event.text;
     EXPECT_NE(event.text.find("upgrade the orchestrator"), std::string::npos) << event.text;

@@ -100,7 +100,7 @@ TEST_P(Participant, RefusesAnOrchestratorOfAnotherVersion) {
     const v1::ToOrchestrator answer = stage.expect(solid, v1::ToOrchestrator::kFailed);
     EXPECT_EQ(answer.failed().code(), v1::Failed::VERSION);
     expect_words(answer.failed().text(),
-                 {"speaks protocol 7.0", "speaks 2.0", "upgrade ", "minimal"});
+                 {"speaks protocol 7.1", "speaks 2.1", "upgrade ", "minimal"});
     EXPECT_EQ(stage.children.at(solid).wait(5), 1);
 }
 

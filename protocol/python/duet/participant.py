@@ -16,7 +16,7 @@ from .messages import v1
 from .sockets import Aborted, ControlLink, DataPlane
 from .solver import Error, FluidSolver, InterfaceLoad, InterfaceMotion, Window
 
-VERSION = v1.Version(major=2, minor=0)
+VERSION = v1.Version(major=2, minor=1)
 
 # What each role does in a window, in order (the table of schedule.hpp).
 RECEIVE, ADVANCE, SEND = "receive", "advance", "send"
