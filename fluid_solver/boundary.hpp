@@ -142,14 +142,18 @@ class Boundary {
         return (1 - along) * segment.a + along * segment.b;
     }
     Vec2 place_on(const Segment& segment, double along, std::span<const Vec2> before) const;
-    /// The narrowest gap, below 1.25 spacings, between a place of the boundary and what lies
-    /// before it and does not hang together with it nearby; either side is the interface's.
+    /// A gap between a segment's start and a face before it that does not hang together with it
+    /// nearby; either side is the interface's. A part is a chain, by its index, or the walls, which
+    /// come last.
     struct Gap {
-        double width = std::numeric_limits<double>::infinity(); ///< m
-        const Segment* opposite = nullptr;
+        double width; ///< m
+        const Segment* from;
+        const Segment* opposite;
+        std::size_t part, opposite_part;
     };
-    /// The gap before the start of each segment. `gaps` is overwritten.
-    void find_gaps(std::vector<Gap>& gaps) const;
+    /// All gaps narrower than `within` m, at most the support. `gaps` is overwritten.
+    void find_gaps(double within, std::vector<Gap>& gaps) const;
+    std::size_t parts() const { return chains_.size() + 1; }
     /// How far an image of a face is from the face itself; zero for the face.
     Vec2 image_shift(const Face& face) const { return face.a - segments_[face.first].a; }
     /// A segment's name for a message: "wall 'hot'", "the interface of 'beam'".

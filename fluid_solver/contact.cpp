@@ -15,6 +15,7 @@ namespace {
 /// Of a spacing: a gap of one spacing holds no row of particles that has its neighbours about it,
 /// and the fluid in it diverges.
 constexpr double narrowest = 1.25;
+constexpr double kept = 0.7; ///< of a gap that is narrow from the start
 /// Of the way along the boundary from one side of a gap to the other: less lies in a notch of less
 /// than 23 degrees, or between two parts that have nothing to do with each other.
 constexpr double notch = 0.2;
@@ -59,14 +60,18 @@ double Boundary::way_along(const Arcs& arcs, std::uint32_t j, const Face& face, 
     const Vec2 on_wall = own ? face.a + foot * face.tangent : segments_[j].a;
     const Vec2 start = position_[chains_[c].nodes.front()],
                end = position_[chains_[c].nodes.back()];
-    return std::min(arc + norm(on_wall - start), length - arc + norm(on_wall - end));
+    return std::min(arc + norm(grid_.shortest(on_wall - start)),
+                    length - arc + norm(grid_.shortest(on_wall - end)));
 }
 
-void Boundary::find_gaps(std::vector<Gap>& gaps) const {
+void Boundary::find_gaps(double within, std::vector<Gap>& gaps) const {
     const Arcs arc = arcs();
-    gaps.assign(segments_.size(), {});
+    const auto part = [&](std::uint32_t segment) {
+        return segment < interface_segments_ ? std::size_t{arc.chain[segment]} : chains_.size();
+    };
+    gaps.clear();
     for (std::uint32_t j = 0; j < segments_.size(); ++j) {
-        const Vec2 x = grid_.wrapped(segments_[j].a);
+        const Vec2 x = grid_.home(segments_[j].a);
         const std::size_t cell = grid_.index(x);
         for (std::uint32_t c = candidate_start_[cell]; c < candidate_start_[cell + 1]; ++c) {
             const Face& face = faces_[candidate_[c]];
@@ -74,21 +79,27 @@ void Boundary::find_gaps(std::vector<Gap>& gaps) const {
             const double foot = std::clamp(dot(r, face.tangent), 0.0, face.length);
             const double width = norm(r - foot * face.tangent);
             const bool moves = j < interface_segments_ || face.first < interface_segments_;
-            if (moves && width < std::min(narrowest * spacing_, gaps[j].width)
-                && dot(r, face.normal) < 0
+            if (moves && width < within && dot(r, face.normal) < 0
                 && width + touching * spacing_ < notch * way_along(arc, j, face, foot)) {
-                gaps[j] = {width, at(face, foot).segment};
+                gaps.push_back(
+                    {width, &segments_[j], at(face, foot).segment, part(j), part(face.first)});
             }
         }
     }
 }
 
-/// Where a scene starts with narrower gaps, the narrowest may close to half of what it was.
+double& Fluid::Implementation::least_gap(const Boundary::Gap& gap) {
+    return least_gaps_[std::min(gap.part, gap.opposite_part) * boundary_.parts()
+                       + std::max(gap.part, gap.opposite_part)];
+}
+
+/// Between two parts that start with a narrower gap, it may close to a share of what it was.
 void Fluid::Implementation::measure_gaps() {
-    least_gap_ = narrowest * config.spacing;
-    boundary_.find_gaps(gaps_);
+    const double least = narrowest * config.spacing;
+    least_gaps_.assign(boundary_.parts() * boundary_.parts(), least);
+    boundary_.find_gaps(least / kept, gaps_);
     for (const Boundary::Gap& gap : gaps_) {
-        least_gap_ = std::min(least_gap_, 0.5 * gap.width);
+        least_gap(gap) = std::min(least_gap(gap), kept * gap.width);
     }
 }
 
@@ -96,18 +107,18 @@ void Fluid::Implementation::check_gaps(double now) {
     if (interface_before_ == interface_position_) {
         return;
     }
-    boundary_.find_gaps(gaps_);
-    for (std::size_t j = 0; j < gaps_.size(); ++j) {
-        if (gaps_[j].width < least_gap_) {
-            const Segment& one = boundary_.segments()[j];
+    boundary_.find_gaps(narrowest * config.spacing, gaps_);
+    for (const Boundary::Gap& gap : gaps_) {
+        if (gap.width < least_gap(gap)) {
+            const Segment& one = *gap.from;
             std::ostringstream sentence;
-            sentence << boundary_.name(one) << " and " << boundary_.name(*gaps_[j].opposite)
-                     << " have come within " << gaps_[j].width / config.spacing
-                     << " spacings of each other at (" << one.a.x << ", " << one.a.y
-                     << ") at t = " << now
-                     << " s; there is no room for fluid between them, and bodies do not touch "
-                        "in this "
-                        "model: end the run before, hold the body off, or refine fluid.spacing";
+            sentence
+                << boundary_.name(one) << " and " << boundary_.name(*gap.opposite)
+                << " have come within " << gap.width / config.spacing
+                << " spacings of each other at (" << one.a.x << ", " << one.a.y
+                << ") at t = " << now
+                << " s; there is no room for fluid between them, and bodies do not touch "
+                   "in this model: end the run before, hold the body off, or refine fluid.spacing";
             throw Diverged(sentence.str());
         }
     }

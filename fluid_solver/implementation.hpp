@@ -124,6 +124,7 @@ class Fluid::Implementation {
     [[noreturn]] void report_escape(const Touch& escaped, double now) const;
 
     // contact.cpp
+    double& least_gap(const Boundary::Gap& gap);
     void measure_gaps();
     void check_gaps(double now);
 
@@ -216,7 +217,7 @@ class Fluid::Implementation {
     std::vector<Vec2> interface_position_, interface_velocity_, interface_acceleration_;
     std::vector<Vec2> interface_before_; ///< m, half a step ago
     std::vector<Boundary::Gap> gaps_;
-    double least_gap_ = 0; ///< m, that the boundary may keep open
+    std::vector<double> least_gaps_; ///< m, by two parts of the boundary
     std::vector<double> interface_temperature_;
     std::array<double, 8> phase_seconds_{};
 };

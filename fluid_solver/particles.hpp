@@ -41,6 +41,12 @@ class CellGrid {
     Vec2 wrapped(Vec2 x) const {
         return {wrap(x.x, lower_.x, period_.x), wrap(x.y, lower_.y, period_.y)};
     }
+    /// The same for a place any number of periods away.
+    Vec2 home(Vec2 x) const {
+        x.x -= period_.x > 0 ? period_.x * std::floor((x.x - lower_.x) / period_.x) : 0;
+        x.y -= period_.y > 0 ? period_.y * std::floor((x.y - lower_.y) / period_.y) : 0;
+        return wrapped(x); // rounding may leave it on the far side
+    }
     /// The shortest of the ways that differ from r by whole periods.
     Vec2 shortest(Vec2 r) const {
         r.x -= period_.x > 0 ? period_.x * std::round(r.x / period_.x) : 0;

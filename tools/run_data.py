@@ -119,7 +119,11 @@ class Series:
         self.names = sorted(name for name in self.file if name.startswith("frame_"))
         if not self.names:
             fail(f"{path} holds no frame yet")
-        self.times = numpy.array([self.file[name].attrs["time"] for name in self.names])
+        try:
+            self.times = numpy.array([self.file[name].attrs["time"] for name in self.names])
+        except (KeyError, OSError):
+            frames = f"{path.stem}_frames"
+            fail(f"the frames of {path} cannot be read; {frames}, which holds them, must lie beside it")
 
     def nearest(self, time):
         """The frame at the time nearest to `time`; the last one if `time` is None."""

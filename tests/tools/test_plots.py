@@ -1,6 +1,7 @@
 """Draws the pictures of tools/ from a small run's folder (made by the program given as argument) and
 looks at what came out."""
 
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -127,6 +128,9 @@ class Plots(unittest.TestCase):
             self.assertIn("neither fluid.h5 nor solid.h5", self.sentence("plot_fields.py", empty))
             h5py.File(Path(empty) / "fluid.h5", "w").close()
             self.assertIn("holds no frame yet", self.sentence("plot_fields.py", empty))
+        with tempfile.TemporaryDirectory() as parted:
+            shutil.copy(self.folder / "fluid.h5", parted)
+            self.assertIn("fluid_frames, which holds them", self.sentence("plot_fields.py", parted))
 
 
 make_run = sys.argv.pop()

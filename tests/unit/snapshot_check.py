@@ -20,7 +20,7 @@ def arrays(stem, element):
             array = data[place][()]
         shape = tuple(int(n) for n in item.get("Dimensions").split())
         kind = {"Float": "<f8", "UInt": "<u4"}[item.get("NumberType")]
-#XDMF leaves a last extent of one out.
+        # XDMF leaves a last extent of one out.
         if array.shape != shape and array.shape != shape + (1,):
             sys.exit(f"{item.text} has the shape {array.shape}, the XDMF says {shape}")
         if array.dtype != numpy.dtype(kind):
