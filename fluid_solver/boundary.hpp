@@ -156,7 +156,7 @@ class Boundary {
     std::size_t parts() const { return chains_.size() + 1; }
     /// How far an image of a face is from the face itself; zero for the face.
     Vec2 image_shift(const Face& face) const { return face.a - segments_[face.first].a; }
-    /// A segment's name for a message: "wall 'hot'", "the interface of 'beam'".
+    /// A segment's name for a message: "wall 'hot'", "the surface of 'beam'".
     std::string name(const Segment& segment) const;
 
     /// Whether x lies in the fluid, by the parity of crossings. O(faces).

@@ -13,7 +13,6 @@ namespace duet::fluid {
 namespace {
 
 constexpr double close = 0.1; ///< of a spacing: nearer than that a particle goes by slow_approach
-constexpr double clearance = 0.1; ///< of a spacing: where a particle is put that is held off
 /// Of a spacing: what is farther behind a wall was passed by it. Half a step moves neither flow nor
 /// walls by more than 0.15 spacings.
 constexpr double deepest_touch = 0.25;

@@ -74,6 +74,7 @@ class Fluid::Implementation {
     void relax();
     void find_compartments();
     void put_inside();
+    static constexpr double clearance = 0.1; ///< of a spacing: how far before a wall it puts
 
     // paper_step.cpp
     void paper_step(double dt, double elapsed, const Motion& motion);

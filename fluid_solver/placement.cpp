@@ -101,7 +101,7 @@ void Fluid::Implementation::put_inside() {
             if (wall.face == nullptr || wall.distance > 0) {
                 break;
             }
-            put(a, wall.point - 0.1 * config.spacing * wall.face->normal);
+            put(a, wall.point - clearance * config.spacing * wall.face->normal);
         }
     });
 }

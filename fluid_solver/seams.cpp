@@ -98,7 +98,6 @@ void Boundary::add_images(std::size_t first_face, std::size_t end) {
     }
     Vec2 low = faces_[first_face].a, high = low;
     for (std::size_t f = first_face; f < end; ++f) {
-        low = {std::min(low.x, faces_[f].a.x), std::min(low.y, faces_[f].a.y)};
         for (const Vec2 x : {faces_[f].a, faces_[f].b}) {
             low = {std::min(low.x, x.x), std::min(low.y, x.y)};
             high = {std::max(high.x, x.x), std::max(high.y, x.y)};

@@ -8,9 +8,7 @@
 namespace duet::orchestrator {
 namespace {
 
-TEST(CheckReport, AWallThatSlipsIsSaidToSlipOnce) {
-    const Case given = parse_case(R"(
-[time]
+const std::string cavity = R"([time]
 end = 1
 
 [fluid]
@@ -18,7 +16,10 @@ spacing = 0.1
 region = [[0, 0], [4, 0], [4, 4], [0, 4]]
 density = 1
 kinematic_viscosity = 1
+)";
 
+TEST(CheckReport, AWallThatSlipsIsSaidToSlipOnce) {
+    const Case given = parse_case(cavity + R"(
 [[fluid.wall]]
 name = "top"
 along = [[0, 4], [4, 4]]
@@ -40,11 +41,9 @@ along = [[0, 0], [4, 0]]
 }
 
 TEST(CheckReport, PeriodicDirectionsAreSaid) {
-    const std::string text = "[time]\nend = 1\n[fluid]\nspacing = 0.1\nregion = [[0, 0], [1, 0], "
-                             "[1, 1], [0, 1]]\ndensity = 1\nkinematic_viscosity = 1\n";
     const auto report = [&](const std::string& periodic) {
-        return check_report(parse_case(text, "case.toml", {"fluid.periodic=\"" + periodic + "\""}),
-                            1);
+        return check_report(
+            parse_case(cavity, "case.toml", {"fluid.periodic=\"" + periodic + "\""}), 1);
     };
     EXPECT_EQ(report("none").find("periodic"), std::string::npos);
     EXPECT_NE(

@@ -36,13 +36,7 @@ double taylor_green_error(double spacing) {
         return Values{0, velocity(x, 0), p, {}};
     });
     fluid.advance(time);
-    const Snapshot s = fluid.snapshot();
-    double squares = 0;
-    for (std::size_t i = 0; i < s.position.size(); ++i) {
-        const Vec2 error = s.velocity[i] - velocity(s.position[i], time);
-        squares += dot(error, error);
-    }
-    return std::sqrt(squares / static_cast<double>(s.position.size())) / U;
+    return velocity_error(fluid.snapshot(), [&](Vec2 x) { return velocity(x, time); }) / U;
 }
 
 TEST(FluidChannel, VorticesInABoxThatSlipsDecayAtSecondOrder) {

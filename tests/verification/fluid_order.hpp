@@ -1,6 +1,8 @@
-// Orders of convergence from errors at three spacings or more.
+// Errors of whole fields, and orders of convergence from errors at three spacings or more.
 
 #pragma once
+
+#include "fluid_solver/fluid.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,6 +12,17 @@
 #include <vector>
 
 namespace duet::fluid::test {
+
+/// Root mean square over the particles of |u - exact(x)|, m/s.
+template <class Exact>
+double velocity_error(const Snapshot& s, const Exact& exact) {
+    double squares = 0;
+    for (std::size_t i = 0; i < s.position.size(); ++i) {
+        const Vec2 error = s.velocity[i] - exact(s.position[i]);
+        squares += dot(error, error);
+    }
+    return std::sqrt(squares / static_cast<double>(s.position.size()));
+}
 
 /// The slope of log error against log spacing (least squares) is at least `order`, and the error at
 /// the finest spacing at most `ceiling`.

@@ -43,13 +43,7 @@ double taylor_green_error(double spacing) {
         return Values{0, velocity(x, 0), p, {}};
     });
     fluid.advance(time);
-    const Snapshot s = fluid.snapshot();
-    double squares = 0;
-    for (std::size_t i = 0; i < s.position.size(); ++i) {
-        const Vec2 error = s.velocity[i] - velocity(s.position[i], time);
-        squares += dot(error, error);
-    }
-    return std::sqrt(squares / static_cast<double>(s.position.size())) / U;
+    return velocity_error(fluid.snapshot(), [&](Vec2 x) { return velocity(x, time); }) / U;
 }
 
 // The ceilings are about twice what was measured.
@@ -90,15 +84,11 @@ ChannelError channel_error(Config config,
     Fluid fluid(config);
     fluid.advance(0.98 * time);
     fluid.advance(0.02 * time); // the last window's mean drag
-    const Snapshot s = fluid.snapshot();
-    double squares = 0;
-    for (std::size_t i = 0; i < s.position.size(); ++i) {
-        const Vec2 error = s.velocity[i] - Vec2{exact(s.position[i].y, time), 0};
-        squares += dot(error, error);
-    }
     const double drag = fluid.walls().back().force.x / (config.region[1].x * shear_at_floor);
-    return {std::sqrt(squares / static_cast<double>(s.position.size())) / scale,
-            std::abs(drag - 1)};
+    const double error = velocity_error(fluid.snapshot(), [&](Vec2 x) {
+        return Vec2{exact(x.y, time), 0};
+    });
+    return {error / scale, std::abs(drag - 1)};
 }
 
 ChannelError poiseuille_start(double spacing) {

@@ -29,14 +29,8 @@ Config disc(double spacing) {
 
 /// Root mean square error of the velocity over the particles, for the exact swirl u(r).
 double swirl_error(const Fluid& fluid, const std::function<double(double)>& swirl) {
-    const Snapshot s = fluid.snapshot();
-    double squares = 0;
-    for (std::size_t i = 0; i < s.position.size(); ++i) {
-        const double r = norm(s.position[i]);
-        const Vec2 error = s.velocity[i] - (swirl(r) / r) * left(s.position[i]);
-        squares += dot(error, error);
-    }
-    return std::sqrt(squares / static_cast<double>(s.position.size()));
+    return velocity_error(fluid.snapshot(),
+                          [&](Vec2 x) { return (swirl(norm(x)) / norm(x)) * left(x); });
 }
 
 /// u = U J1(lambda r) dies as exp(-lambda^2 nu t), lambda = 3.831706: an exact solution of the
