@@ -31,6 +31,7 @@ struct WallTerms {
     Vec2 L_S;              ///< div v of the walls: value - v_a . L S
     double value = 0;      ///< sum v_wall . L S
     float softness = 1;    ///< the share of c^2 that the particle's own stiffness allows
+    WeightSum friction{};  ///< of u and v, 1/s: what of it follows the velocity within the step
 };
 
 /// A particle in the layer next to a wall from which flux and traction are taken.
@@ -51,6 +52,7 @@ struct EvaluationInput {
     double diffusivity;  ///< m2/s
     double shift_factor; ///< m2: dr = -shift_factor gradC
     bool heat;           ///< the temperature can change
+    double step = 0;     ///< s, the outer one
 };
 
 class Evaluation {

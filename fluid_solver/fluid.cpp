@@ -106,6 +106,7 @@ void Fluid::Implementation::set_fields(const std::function<Values(Vec2)>& field)
     for (std::size_t a = 0; a < particles.size(); ++a) {
         const Values v = field(particles.position(a));
         particles.fields[a] = {v.velocity.x, v.velocity.y, v.pressure, v.temperature};
+        particles.relaxing[a] = 0;
     }
     level();
     for (std::size_t a = 0; a < particles.size(); ++a) {
@@ -347,7 +348,8 @@ void Fluid::Implementation::evaluate(double dt) {
                      config.kinematic_viscosity,
                      config.conductivity / (config.density * config.heat_capacity),
                      shift_factor(h, speed_, dt, config.spacing),
-                     heat_});
+                     heat_,
+                     dt});
 }
 
 /// Serial: a formula of the scene is evaluated by one thread at a time.

@@ -31,6 +31,7 @@ void Particles::resize(std::size_t n) {
     x.resize(n);
     y.resize(n);
     fields.resize(n);
+    relaxing.resize(n);
     identity.resize(n);
     compartment.resize(n);
 }
@@ -74,6 +75,7 @@ void Particles::sort(const CellGrid& grid, int threads) {
     reorder(x, spare_, target_, threads);
     reorder(y, spare_, target_, threads);
     reorder(fields, spare_fields_, target_, threads);
+    reorder(relaxing, spare_relaxing_, target_, threads);
     reorder(identity, spare_identity_, target_, threads);
     reorder(compartment, spare_compartment_, target_, threads);
 }

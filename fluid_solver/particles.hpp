@@ -119,6 +119,7 @@ class Particles {
   public:
     std::vector<double> x, y;
     std::vector<Fields> fields;
+    std::vector<float> relaxing;            ///< P, Pa: what the pressure answered of late
     std::vector<std::uint32_t> identity;    ///< constant through a run
     std::vector<std::uint16_t> compartment; ///< of the fluid's connected parts
 
@@ -138,6 +139,7 @@ class Particles {
     std::vector<std::uint32_t> cell_, cell_start_, target_;
     std::vector<double> spare_;
     std::vector<Fields> spare_fields_;
+    std::vector<float> spare_relaxing_;
     std::vector<std::uint32_t> spare_identity_;
     std::vector<std::uint16_t> spare_compartment_;
 };

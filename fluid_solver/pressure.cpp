@@ -5,6 +5,8 @@ namespace duet::fluid {
 namespace {
 
 constexpr float diffusion = 0.1F; ///< delta of the pressure's diffusion
+constexpr float share = 0.5F;     ///< phi: of the pressure's answer, what relaxes
+constexpr double relaxation = 6;  ///< its time, in h/c
 
 } // namespace
 
@@ -47,13 +49,23 @@ void Pressure::accelerate(const Particles& particles,
     Flow& flow = flow_[a];
     flow.u += step * (drive.x + elapsed * drive.rate_x - specific_volume * px);
     flow.v += step * (drive.y + elapsed * drive.rate_y - specific_volume * py);
+    if (const WallTerms* wall = evaluation.wall(a)) { // v + step k (v_start - v), implicitly
+        flow.u /= 1 + step * wall->friction.x;
+        flow.v /= 1 + step * wall->friction.y;
+    }
     flow.px = px;
     flow.py = py;
 }
 
-/// dp/dt = -rho c^2 div v + v.grad p + delta h c psi,
+/// dp/dt = (1 - phi) r + phi dP/dt + v.grad p,   dP/dt = r - P/tau,
+/// r = -rho c^2 div v + delta h c psi,
 /// psi = sum 2 V F [ (p_a - p_b) - (grad p_a + grad p_b).x_ab / 2 ].
-void Pressure::compress(const Evaluation& evaluation, const InnerSteps& inner, std::size_t a) {
+/// Without relaxation (phi = 0) a uniform wind of c/10 makes waves of some seven spacings grow by
+/// 3 % a step, since v.grad p is taken at the step's start, and the sound of a room rings on.
+void Pressure::compress(const Evaluation& evaluation,
+                        const InnerSteps& inner,
+                        std::vector<float>& relaxing,
+                        std::size_t a) {
     const Flow& own = flow_[a];
     const auto load = [](const Flow& flow) {
         Four r;
@@ -90,10 +102,14 @@ void Pressure::compress(const Evaluation& evaluation, const InnerSteps& inner, s
     const WeightSum& w = evaluation.weight_sum[a];
     const float psi = 2 * curvature_[a] - (sx[2] + sy[3]) - 2 * (w.x * own.px + w.y * own.py);
     const auto h = static_cast<float>(inner.smoothing_length);
-    next_p_[a] = p_[a]
-                 + static_cast<float>(inner.step)
-                       * (-stiffness * divergence + own.u * own.px + own.v * own.py
-                          + diffusion * h * c * psi);
+    const auto step = static_cast<float>(inner.step);
+    const float answer = step * (diffusion * h * c * psi - stiffness * divergence);
+    const auto decay =
+        static_cast<float>(inner.step * inner.sound_speed / (relaxation * inner.smoothing_length));
+    const float before = relaxing[a];
+    relaxing[a] = (before + answer) / (1 + decay);
+    next_p_[a] = p_[a] + (1 - share) * answer + share * (relaxing[a] - before)
+                 + step * (own.u * own.px + own.v * own.py);
 }
 
 template <bool Buoyancy>
@@ -115,6 +131,10 @@ void Pressure::run(Particles& particles, Evaluation& evaluation, const InnerStep
             force += inner.hydrostatics->departure(f.T, compartment);
             rate = evaluation.heating[a] * inner.hydrostatics->per_kelvin();
         }
+        if (const WallTerms* wall = evaluation.wall(a)) {
+            force += Vec2{static_cast<double>(wall->friction.x) * f.u,
+                          static_cast<double>(wall->friction.y) * f.v};
+        }
         drive_[a] = {narrow(force.x), narrow(force.y), narrow(rate.x), narrow(rate.y)};
     });
     for (int s = 0; s < inner.count; ++s) {
@@ -122,7 +142,9 @@ void Pressure::run(Particles& particles, Evaluation& evaluation, const InnerStep
         for_particles(n, threads_, [&](std::size_t a) {
             accelerate<Buoyancy>(particles, evaluation, inner, time, a);
         });
-        for_particles(n, threads_, [&](std::size_t a) { compress(evaluation, inner, a); });
+        for_particles(n, threads_, [&](std::size_t a) {
+            compress(evaluation, inner, particles.relaxing, a);
+        });
         p_.swap(next_p_);
     }
     for_particles(n, threads_, [&](std::size_t a) {

@@ -25,8 +25,8 @@ class Pressure {
   public:
     explicit Pressure(int threads) : threads_(threads) {}
 
-    /// Advances u, v and p of the particles by `count` steps and leaves the last gradient of p in
-    /// the evaluation's slopes. With Buoyancy the body force follows T + t dT/dt.
+    /// Advances u, v, p and P of the particles by `count` steps and leaves the last gradient of p
+    /// in the evaluation's slopes. With Buoyancy the body force follows T + t dT/dt.
     template <bool Buoyancy>
     void run(Particles& particles, Evaluation& evaluation, const InnerSteps& inner);
 
@@ -46,7 +46,10 @@ class Pressure {
                     const InnerSteps& inner,
                     double time,
                     std::size_t a);
-    void compress(const Evaluation& evaluation, const InnerSteps& inner, std::size_t a);
+    void compress(const Evaluation& evaluation,
+                  const InnerSteps& inner,
+                  std::vector<float>& relaxing,
+                  std::size_t a);
 
     int threads_;
     std::vector<Flow> flow_;

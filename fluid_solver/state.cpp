@@ -9,7 +9,7 @@ namespace duet::fluid {
 
 namespace {
 
-constexpr std::uint64_t state_mark = 0x3444554c46544455; // layout of the bytes below
+constexpr std::uint64_t state_mark = 0x3544554c46544455; // layout of the bytes below
 
 class Writer {
   public:
@@ -79,6 +79,7 @@ void Fluid::Implementation::transfer(Archive& archive, Self& self) {
     archive(self.particles.x);
     archive(self.particles.y);
     archive(self.particles.fields);
+    archive(self.particles.relaxing);
     archive(self.particles.identity);
     archive(self.particles.compartment);
     archive(self.particles.cell_start_);

@@ -279,6 +279,7 @@ TEST(FluidBudget, WhatTheFlowLosesIsWhatViscosityTakes) {
     const auto shares = [](double spacing) {
         Config config = closed({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, spacing, false);
         config.kinematic_viscosity = 0.05;
+        config.sound_speed = 20; // what the pressure holds and gives back as it dies goes with 1/c^2
         Fluid fluid(config);
         const double pi = std::acos(-1.0);
         fluid.set_fields([&](Vec2 x) {
@@ -289,18 +290,21 @@ TEST(FluidBudget, WhatTheFlowLosesIsWhatViscosityTakes) {
         const double before = fluid.ledger().kinetic_energy, start = 1e-4;
         fluid.advance(start);
         const double rate = fluid.ledger().viscous_loss / start;
+        fluid.advance(0.05); // it starts without its pressure: until the sound of that has died
+        const Ledger settled = fluid.ledger();
         fluid.advance(0.2);
         const Ledger l = fluid.ledger();
         EXPECT_LT(l.kinetic_energy, 0.8 * before);
         EXPECT_NEAR(l.mechanical_residual, l.kinetic_energy - before + l.viscous_loss, 1e-12);
         return Share{std::abs(rate / (2 * pi * pi * config.kinematic_viscosity) - 1),
-                     std::abs(l.mechanical_residual) / l.viscous_loss};
+                     std::abs(l.mechanical_residual - settled.mechanical_residual)
+                         / (l.viscous_loss - settled.viscous_loss)};
     };
     const Share coarse = shares(0.05), fine = shares(0.025);
     // Second order, less what the first spacing is short of it.
     EXPECT_LT(coarse.rate_error, 0.02);
     EXPECT_LT(fine.rate_error, 0.32 * coarse.rate_error);
-    EXPECT_LT(coarse.unexplained, 0.025);
+    EXPECT_LT(coarse.unexplained, 0.016);
     EXPECT_LT(fine.unexplained, 0.3 * coarse.unexplained);
 }
 
@@ -309,15 +313,18 @@ TEST(FluidBudget, WhatALidPutsInIsWhatViscosityTakes) {
         Config config = closed({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, spacing, false);
         config.walls = {{"lid", {0, 1}, {1, 1}, {}, {1, 0}}};
         config.kinematic_viscosity = 0.1;
+        config.sound_speed = 40;
         Fluid fluid(config);
+        fluid.advance(0.5); // the lid starts at once, which is loud
+        const Ledger settled = fluid.ledger();
         fluid.advance(1);
         const Ledger l = fluid.ledger();
-        return std::abs(l.mechanical_residual) / l.work_from_walls;
+        return std::abs(l.mechanical_residual - settled.mechanical_residual)
+               / (l.work_from_walls - settled.work_from_walls);
     };
-    const double coarse = unexplained(0.05), fine = unexplained(0.025);
-    // Of first order: the velocity jumps at the lid's ends.
-    EXPECT_LT(coarse, 0.02);
-    EXPECT_LT(fine, 0.6 * coarse);
+    // No order: the velocity jumps at the lid's ends, and so does what particles there make of it.
+    EXPECT_LT(unexplained(0.05), 0.01);
+    EXPECT_LT(unexplained(0.025), 0.01);
 }
 
 TEST(FluidBudget, ALatticeThatFitsIsKept) {
