@@ -169,14 +169,29 @@ Four weight_sums(const DirectionWeights& d,
            + sums[2] * Four{Bu[2], Bv[2], 0, BT[2]};
 }
 
-/// The part of the friction of a particle, 1/s, that must follow its velocity within the outer
-/// step. The viscous term stays as it was at the step's start, and where c dt is about three
-/// spacings the sound of the inner steps swings round once meanwhile: what should damp the
-/// particle's part in it then drives it, and that grows if friction times the step exceeds 0.7.
-/// Inside the fluid it is 0.42 at most; beside a wall 0.8 and more, in a corner 1.0.
-float excess_friction(double friction, double step) {
-    constexpr double frozen = 0.5;
-    return static_cast<float>(std::max(0.0, friction - frozen / step));
+/// The viscous term stays as it was at the outer step's start, and where c dt is about three
+/// spacings the sound of the inner steps swings round once meanwhile: what should damp a particle's
+/// part in it then drives it, and that grows if friction times the step exceeds 0.7. Inside the
+/// fluid it is 0.42 at most; beside a wall 0.8 and more, in a corner 1.0. So much may stay frozen:
+constexpr double frozen_across = 0.5, frozen_along = 0.8; // of a wall; in a corner the first
+
+/// What exceeds it, of the friction on u and v (walls that slip lie along an axis), 1/s.
+Friction following(const std::vector<Contact>& contacts,
+                   double of_u,
+                   double of_v,
+                   const EvaluationInput& input) {
+    const auto nearest =
+        std::min_element(contacts.begin(), contacts.end(), [](const Contact& a, const Contact& b) {
+            return a.distance < b.distance;
+        });
+    const Vec2 n = nearest->normal;
+    const bool corner = std::any_of(contacts.begin(), contacts.end(), [&](const Contact& other) {
+        return other.distance < input.spacing && std::abs(dot(other.normal, n)) < 0.9;
+    });
+    const double across = of_u * n.x * n.x + of_v * n.y * n.y, along = of_u + of_v - across;
+    return {n,
+            std::max(0.0, across - frozen_across / input.step),
+            std::max(0.0, along - (corner ? frozen_across : frozen_along) / input.step)};
 }
 
 Correction narrow(const Mat2& m) {
@@ -367,6 +382,10 @@ void Evaluation::beside_walls(std::size_t a,
                       + Ex * (Lxx * qx + Lxy * qy) + Ey * (Lyx * qx + Lyy * qy);
     const double step = scene.input.step, nu = scene.input.viscosity;
     heating[a] /= std::max(1.0, -scene.input.diffusivity * step * own[3]);
+    Friction friction;
+    if (std::max(-own[0], -own[1]) * nu * step > frozen_across) {
+        friction = following(work.contacts, -nu * own[0], -nu * own[1], scene.input);
+    }
     auto& terms = wall_[a / chunk_size];
     wall_slot_[a] = static_cast<std::uint8_t>(terms.size());
     terms.push_back({narrow(L_velocity),
@@ -381,7 +400,7 @@ void Evaluation::beside_walls(std::size_t a,
                               sum_w,
                               L_velocity * sum_w + L_S,
                               scene.input.spacing),
-                     {excess_friction(-nu * own[0], step), excess_friction(-nu * own[1], step)}});
+                     friction});
     shift[a] = shift_vector(sum_w + w.C,
                             push_off(work.contacts, scene.input.spacing),
                             scene.input.shift_factor,

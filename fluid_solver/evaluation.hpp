@@ -23,6 +23,18 @@ struct WeightSum {
     float x, y;
 };
 
+/// What of the friction on a particle follows its velocity within the outer step, 1/s.
+struct Friction {
+    Vec2 normal;                  ///< of the nearest wall
+    double across = 0, along = 0; ///< that wall
+
+    bool none() const { return across == 0 && along == 0; }
+    /// The part of v across the wall times k, and that along it times l.
+    Vec2 times(Vec2 v, double k, double l) const {
+        return l * v + ((k - l) * dot(v, normal)) * normal;
+    }
+};
+
 /// What the walls add to the inner step of a particle near them.
 struct WallTerms {
     Correction L_velocity; ///< gradient correction of the velocity
@@ -31,7 +43,7 @@ struct WallTerms {
     Vec2 L_S;              ///< div v of the walls: value - v_a . L S
     double value = 0;      ///< sum v_wall . L S
     float softness = 1;    ///< the share of c^2 that the particle's own stiffness allows
-    WeightSum friction{};  ///< of u and v, 1/s: what of it follows the velocity within the step
+    Friction friction;
 };
 
 /// A particle in the layer next to a wall from which flux and traction are taken.
@@ -86,6 +98,11 @@ class Evaluation {
     const WallTerms* wall(std::size_t a) const {
         const std::uint8_t slot = wall_slot_[a];
         return slot == no_wall ? nullptr : &wall_[a / chunk_size][slot];
+    }
+    /// What follows the velocity of a particle near a wall; null where nothing needs to.
+    const Friction* friction(std::size_t a) const {
+        const WallTerms* terms = wall(a);
+        return terms == nullptr || terms->friction.none() ? nullptr : &terms->friction;
     }
     /// A further body force b on a particle: frozen acceleration, and beside walls the part
     /// rho b.n of the pressure's known slope.

@@ -49,9 +49,13 @@ void Pressure::accelerate(const Particles& particles,
     Flow& flow = flow_[a];
     flow.u += step * (drive.x + elapsed * drive.rate_x - specific_volume * px);
     flow.v += step * (drive.y + elapsed * drive.rate_y - specific_volume * py);
-    if (const WallTerms* wall = evaluation.wall(a)) { // v + step k (v_start - v), implicitly
-        flow.u /= 1 + step * wall->friction.x;
-        flow.v /= 1 + step * wall->friction.y;
+    if (const Friction* friction = evaluation.friction(a)) {
+        // dv/dt = ... + k (v_start - v), implicitly; the first part is in the drive
+        const double k = 1 / (1 + inner.step * friction->across);
+        const double l = 1 / (1 + inner.step * friction->along);
+        const Vec2 v = friction->times({flow.u, flow.v}, k, l);
+        flow.u = static_cast<float>(v.x);
+        flow.v = static_cast<float>(v.y);
     }
     flow.px = px;
     flow.py = py;
@@ -64,7 +68,8 @@ void Pressure::accelerate(const Particles& particles,
 /// 3 % a step, since v.grad p is taken at the step's start, and the sound of a room rings on.
 void Pressure::compress(const Evaluation& evaluation,
                         const InnerSteps& inner,
-                        std::vector<float>& relaxing,
+                        float kept,
+                        float& relaxing,
                         std::size_t a) {
     const Flow& own = flow_[a];
     const auto load = [](const Flow& flow) {
@@ -104,11 +109,9 @@ void Pressure::compress(const Evaluation& evaluation,
     const auto h = static_cast<float>(inner.smoothing_length);
     const auto step = static_cast<float>(inner.step);
     const float answer = step * (diffusion * h * c * psi - stiffness * divergence);
-    const auto decay =
-        static_cast<float>(inner.step * inner.sound_speed / (relaxation * inner.smoothing_length));
-    const float before = relaxing[a];
-    relaxing[a] = (before + answer) / (1 + decay);
-    next_p_[a] = p_[a] + (1 - share) * answer + share * (relaxing[a] - before)
+    const float before = relaxing;
+    relaxing = kept * (before + answer);
+    next_p_[a] = p_[a] + (1 - share) * answer + share * (relaxing - before)
                  + step * (own.u * own.px + own.v * own.py);
 }
 
@@ -131,19 +134,20 @@ void Pressure::run(Particles& particles, Evaluation& evaluation, const InnerStep
             force += inner.hydrostatics->departure(f.T, compartment);
             rate = evaluation.heating[a] * inner.hydrostatics->per_kelvin();
         }
-        if (const WallTerms* wall = evaluation.wall(a)) {
-            force += Vec2{static_cast<double>(wall->friction.x) * f.u,
-                          static_cast<double>(wall->friction.y) * f.v};
+        if (const Friction* friction = evaluation.friction(a)) {
+            force += friction->times({f.u, f.v}, friction->across, friction->along);
         }
         drive_[a] = {narrow(force.x), narrow(force.y), narrow(rate.x), narrow(rate.y)};
     });
+    const float kept =
+        narrow(1 / (1 + inner.step * inner.sound_speed / (relaxation * inner.smoothing_length)));
     for (int s = 0; s < inner.count; ++s) {
         const double time = s * inner.step;
         for_particles(n, threads_, [&](std::size_t a) {
             accelerate<Buoyancy>(particles, evaluation, inner, time, a);
         });
         for_particles(n, threads_, [&](std::size_t a) {
-            compress(evaluation, inner, particles.relaxing, a);
+            compress(evaluation, inner, kept, particles.relaxing[a], a);
         });
         p_.swap(next_p_);
     }

@@ -48,7 +48,8 @@ class Pressure {
                     std::size_t a);
     void compress(const Evaluation& evaluation,
                   const InnerSteps& inner,
-                  std::vector<float>& relaxing,
+                  float kept,
+                  float& relaxing,
                   std::size_t a);
 
     int threads_;

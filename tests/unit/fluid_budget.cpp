@@ -279,7 +279,8 @@ TEST(FluidBudget, WhatTheFlowLosesIsWhatViscosityTakes) {
     const auto shares = [](double spacing) {
         Config config = closed({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, spacing, false);
         config.kinematic_viscosity = 0.05;
-        config.sound_speed = 20; // what the pressure holds and gives back as it dies goes with 1/c^2
+        config.sound_speed =
+            20; // what the pressure holds and gives back as it dies goes with 1/c^2
         Fluid fluid(config);
         const double pi = std::acos(-1.0);
         fluid.set_fields([&](Vec2 x) {

@@ -309,12 +309,22 @@ void expect_inner_step_of_twin(const Config& config) {
         const Vec2 b = (old[a].T - 0.4) * Vec2{3, -40};
         slope[a] = inverse(M) * (differences + density * (sums[a].N_n * b));
         const Vec2 push = room.evaluation.viscous[a] + b - (1 / density) * slope[a];
-        const auto friction = [&](const DirichletSums& known, const NeumannSums& slips, int lane) {
-            const double own = own_share(room, a, walls_of(sums[a], known, slips, lane));
-            return contacts.empty() ? 0 : std::max(0.0, -viscosity * own - 0.5 / outer_step);
-        };
-        const double kx = friction(sums[a].u, sums[a].u_slips, 0);
-        const double ky = friction(sums[a].v, sums[a].v_slips, 1);
+        const auto friction =
+            [&](const DirichletSums& known, const NeumannSums& slips, int lane, double frozen) {
+                const double own = own_share(room, a, walls_of(sums[a], known, slips, lane));
+                return contacts.empty() ? 0 : std::max(0.0, -viscosity * own - frozen / outer_step);
+            };
+        // More of it stays frozen along the nearest wall; all of them lie along the axes.
+        double to_x = 1e9, to_y = 1e9;
+        for (const Contact& contact : contacts) {
+            double& to = std::abs(contact.normal.x) > 0.5 ? to_x : to_y;
+            to = std::min(to, contact.distance);
+        }
+        const bool corner = to_x < spacing && to_y < spacing;
+        const double kx =
+            friction(sums[a].u, sums[a].u_slips, 0, corner || to_x < to_y ? 0.5 : 0.8);
+        const double ky =
+            friction(sums[a].v, sums[a].v_slips, 1, corner || to_y < to_x ? 0.5 : 0.8);
         slowed += kx > 0 || ky > 0 ? 1 : 0;
         velocity[a] = {old[a].u + inner_step * push.x / (1 + inner_step * kx),
                        old[a].v + inner_step * push.y / (1 + inner_step * ky)};
