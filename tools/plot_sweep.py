@@ -98,8 +98,8 @@ def main():
                     panel.annotate(text, (x, y), textcoords="offset points", xytext=(4, 4), fontsize=7)
             panel.set_title(check[len(ERROR):], fontsize=9)
             panel.set_xlabel("CPU seconds")
-            for axis in (panel.xaxis, panel.yaxis):
-                axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+            for axis, limits in ((panel.xaxis, panel.get_xlim()), (panel.yaxis, panel.get_ylim())):
+                axis.set_major_locator(LogLocator(subs=(1, 2, 5) if limits[1] < 100 * limits[0] else (1,)))
                 axis.set_major_formatter("{x:g}")
                 axis.set_minor_formatter(NullFormatter())
         for panel in list(panels.flat)[len(checks):]:
