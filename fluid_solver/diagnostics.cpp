@@ -216,7 +216,9 @@ std::vector<std::string> Fluid::Implementation::model() const {
     return {size.str(),
             physics.str(),
             paper_ ? "formulation: the source paper's, cubic spline, h = 1.2 spacings"
-                   : "formulation: consistent, Wendland C2, support 2.6 spacings"};
+            : config.fourth_order
+                ? "formulation: consistent, Wendland C2, support 2.6 spacings, fourth order"
+                : "formulation: consistent, Wendland C2, support 2.6 spacings"};
 }
 
 } // namespace duet::fluid

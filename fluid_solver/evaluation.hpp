@@ -65,6 +65,7 @@ struct EvaluationInput {
     double shift_factor; ///< m2: dr = -shift_factor gradC
     bool heat;           ///< the temperature can change
     double step = 0;     ///< s, the outer one
+    bool fourth_order = false;
 };
 
 class Evaluation {
@@ -84,6 +85,7 @@ class Evaluation {
     std::vector<Vec2> viscous;                    ///< m/s2
     std::vector<double> heating;                  ///< K/s
     std::vector<Vec2> shift;                      ///< m
+    std::vector<Slope> laplacian;                 ///< of u, v, T, uncorrected; with fourth_order
     std::vector<WeightSum> weight_sum;            ///< sum w
     std::vector<std::uint8_t> near_heated;        ///< within the support of a heated wall
     std::vector<std::uint8_t> count;              ///< of neighbours

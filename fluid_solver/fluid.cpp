@@ -12,6 +12,7 @@ namespace {
 
 constexpr double courant_flow = 0.3;        ///< of dx/U, outer step
 constexpr double courant_diffusion = 0.15;  ///< of dx^2/max(nu, alpha), outer step
+constexpr double courant_resonant = 0.11;   ///< of dx^2/nu, where c dt is 2 to 4 spacings
 constexpr double courant_sound = 1.65;      ///< of dx/c, inner step (stable to 2.0)
 constexpr double courant_paper = 0.3;       ///< of dx/(c + U), the paper's single step
 constexpr double step_tolerance = 1.05;     ///< over the outer limit rather than twice the steps
@@ -29,6 +30,10 @@ const Config& checked(const Config& c) {
         && std::any_of(c.walls.begin(), c.walls.end(), [](const Wall& w) { return w.slip; })) {
         throw SceneError("the paper's formulation knows no walls that slip; take the consistent "
                          "one, or let no wall slip");
+    }
+    if (c.formulation == Formulation::paper && c.fourth_order) {
+        throw SceneError("the paper's formulation has no Laplacian of fourth order; take the "
+                         "consistent one, or leave fluid.fourth_order away");
     }
     const auto [left, right] = std::minmax_element(
         c.region.begin(), c.region.end(), [](Vec2 p, Vec2 q) { return p.x < q.x; });
@@ -86,6 +91,8 @@ Fluid::Implementation::Implementation(const Config& c,
 
 /// To be called whenever the fields were set from outside.
 void Fluid::Implementation::start() {
+    particles.laplacian.assign(config.fourth_order ? particles.size() : 0,
+                               Slope{}); // not yet known
     const auto differs = [&](const Fields& f) { return f.T != particles.fields[0].T; };
     heat_ = config.conductivity > 0
             && (boundary_.heated()
@@ -120,9 +127,9 @@ double Fluid::Implementation::stable_step() const {
     const double dx = config.spacing;
     const double diffusivity =
         heat_ ? config.conductivity / (config.density * config.heat_capacity) : 0;
-    const double slowest = std::max(still_ ? 0 : config.kinematic_viscosity, diffusivity);
     double limit = std::numeric_limits<double>::infinity();
-    if (slowest > 0) {
+    const double nu = still_ ? 0 : config.kinematic_viscosity;
+    if (const double slowest = std::max(nu, diffusivity); slowest > 0) {
         limit = std::min(limit, courant_diffusion * dx * dx / slowest);
     }
     if (fastest() > 0) {
@@ -130,6 +137,10 @@ double Fluid::Implementation::stable_step() const {
     }
     if (paper_) {
         return std::min(limit, courant_paper * dx / (sound_speed_ + fastest()));
+    }
+    // Where frozen friction meets the sound (evaluation.cpp: following), less of it.
+    if (const double way = sound_speed_ * limit / dx; way > 2 && way < 4 && nu > 0) {
+        limit = std::min(limit, courant_resonant * dx * dx / nu);
     }
     // Never so long that hundreds of inner steps share one geometry.
     return std::min(limit, 50 * courant_sound * dx / sound_speed_);
@@ -197,6 +208,7 @@ void Fluid::Implementation::step(double dt, double elapsed, const Motion& motion
     }
     {
         const Stamp stamp(phase_seconds_[walls_and_closure]);
+        particles.laplacian.swap(evaluation_.laplacian);
         book(dt);
         book_energy(dt);
         correct_fields(dt);
@@ -230,6 +242,7 @@ void Fluid::Implementation::conduct(double dt, double elapsed, const Motion& mot
             std::fill(evaluation_.shift.begin(), evaluation_.shift.end(), Vec2{});
         }
         const Stamp stamp(phase_seconds_[walls_and_closure]);
+        particles.laplacian.swap(evaluation_.laplacian);
         book(dt);
         advance_temperature(dt);
     }
@@ -349,7 +362,8 @@ void Fluid::Implementation::evaluate(double dt) {
                      config.conductivity / (config.density * config.heat_capacity),
                      shift_factor(h, speed_, dt, config.spacing),
                      heat_,
-                     dt});
+                     dt,
+                     config.fourth_order});
 }
 
 /// Serial: a formula of the scene is evaluated by one thread at a time.

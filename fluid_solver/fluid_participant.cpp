@@ -177,6 +177,7 @@ Config config_from_scene(const v1::Scene& scene, unsigned threads) {
     config.sound_speed = fluid.sound_speed();
     config.seed = fluid.seed();
     config.disorder = fluid.disorder();
+    config.fourth_order = fluid.fourth_order();
     config.threads = static_cast<int>(threads > 0 ? threads : 1);
     return config;
 }

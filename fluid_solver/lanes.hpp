@@ -26,6 +26,12 @@ using Four = float __attribute__((vector_size(16)));
 using Eight = float __attribute__((vector_size(32)));
 constexpr std::size_t eight = 8;
 
+inline Four load(const Slope& s) {
+    Four r;
+    std::memcpy(&r, &s, sizeof r);
+    return r;
+}
+
 inline Lanes load(const Fields& f) {
     Lanes r;
     std::memcpy(&r, &f, sizeof r);

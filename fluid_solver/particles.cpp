@@ -76,6 +76,7 @@ void Particles::sort(const CellGrid& grid, int threads) {
     reorder(y, spare_, target_, threads);
     reorder(fields, spare_fields_, target_, threads);
     reorder(relaxing, spare_relaxing_, target_, threads);
+    reorder(laplacian, spare_laplacian_, target_, threads);
     reorder(identity, spare_identity_, target_, threads);
     reorder(compartment, spare_compartment_, target_, threads);
 }

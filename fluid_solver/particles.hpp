@@ -119,8 +119,9 @@ class Particles {
   public:
     std::vector<double> x, y;
     std::vector<Fields> fields;
-    std::vector<float> relaxing;            ///< P, Pa: what the pressure answered of late
-    std::vector<std::uint32_t> identity;    ///< constant through a run
+    std::vector<float> relaxing;         ///< P, Pa: what the pressure answered of late
+    std::vector<Slope> laplacian;        ///< of u, v, T in the step before, where it is asked for
+    std::vector<std::uint32_t> identity; ///< constant through a run
     std::vector<std::uint16_t> compartment; ///< of the fluid's connected parts
 
     std::size_t size() const { return x.size(); }
@@ -140,6 +141,7 @@ class Particles {
     std::vector<double> spare_;
     std::vector<Fields> spare_fields_;
     std::vector<float> spare_relaxing_;
+    std::vector<Slope> spare_laplacian_;
     std::vector<std::uint32_t> spare_identity_;
     std::vector<std::uint16_t> spare_compartment_;
 };

@@ -95,9 +95,10 @@ struct Config {
     VectorFunction body_force;        ///< m/s2, beside the buoyancy
     std::vector<Wall> walls;
     PressureLevel pressure_level = PressureLevel::zero_mean;
-    double sound_speed = 0; ///< m/s; 0 adapts it to the flow
-    unsigned seed = 1;      ///< of the initial disorder
-    double disorder = 0;    ///< initial random displacement, in spacings
+    double sound_speed = 0;    ///< m/s; 0 adapts it to the flow
+    unsigned seed = 1;         ///< of the initial disorder
+    double disorder = 0;       ///< initial random displacement, in spacings
+    bool fourth_order = false; ///< Laplacians away from walls without the kernel's error
     int threads = 1;
 };
 

@@ -80,6 +80,7 @@ void Fluid::Implementation::transfer(Archive& archive, Self& self) {
     archive(self.particles.y);
     archive(self.particles.fields);
     archive(self.particles.relaxing);
+    archive(self.particles.laplacian);
     archive(self.particles.identity);
     archive(self.particles.compartment);
     archive(self.particles.cell_start_);

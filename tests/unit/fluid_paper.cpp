@@ -128,6 +128,18 @@ TEST(FluidPaper, HeatOfThePairSumsIsTheWalls) {
     EXPECT_LT(given, -1) << "the fluid is warmer than its walls";
 }
 
+TEST(FluidPaper, WhatItHasNotIsRefused) {
+    Config config = closed({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, 0.1, false);
+    config.formulation = Formulation::paper;
+    config.sound_speed = 10;
+    EXPECT_NO_THROW(Fluid{config});
+    config.fourth_order = true;
+    EXPECT_THROW(Fluid{config}, SceneError);
+    config.fourth_order = false;
+    config.walls = {{.name = "left", .from = {0, 0}, .to = {0, 1}, .slip = true}};
+    EXPECT_THROW(Fluid{config}, SceneError);
+}
+
 TEST(FluidPaper, HeatFlowsFromHotToCold) {
     // The signs of (41) and (52) are for x . gradW < 0.
     const paper::Pair pair{{0.1, 0}, -5, 1, 1, 1, 0};

@@ -14,6 +14,7 @@ Config stirred() {
     config.thermal_expansion = 1;
     config.gravity = {0, -7.1e4};
     config.disorder = 0.1;
+    config.fourth_order = true; // all that is carried from step to step
     return config;
 }
 
