@@ -60,12 +60,12 @@ struct WallSample {
 /// Parameters of the pass.
 struct EvaluationInput {
     double spacing, volume;
-    double viscosity;    ///< m2/s
-    double diffusivity;  ///< m2/s
-    double shift_factor; ///< m2: dr = -shift_factor gradC
-    bool heat;           ///< the temperature can change
-    double step = 0;     ///< s, the outer one
-    bool fourth_order = false;
+    double viscosity;          ///< m2/s
+    double diffusivity;        ///< m2/s
+    double shift_factor;       ///< m2: dr = -shift_factor gradC
+    bool heat;                 ///< the temperature can change
+    double step = 0;           ///< s, the outer one; with 0 no friction follows
+    bool fourth_order = false; ///< needs the particles' Laplacians of the step before
 };
 
 class Evaluation {
@@ -100,11 +100,6 @@ class Evaluation {
     const WallTerms* wall(std::size_t a) const {
         const std::uint8_t slot = wall_slot_[a];
         return slot == no_wall ? nullptr : &wall_[a / chunk_size][slot];
-    }
-    /// What follows the velocity of a particle near a wall; null where nothing needs to.
-    const Friction* friction(std::size_t a) const {
-        const WallTerms* terms = wall(a);
-        return terms == nullptr || terms->friction.none() ? nullptr : &terms->friction;
     }
     /// A further body force b on a particle: frozen acceleration, and beside walls the part
     /// rho b.n of the pressure's known slope.
@@ -160,6 +155,7 @@ class Evaluation {
 
     int threads_;
     Kernel kernel_;
+    float lattice_error_; ///< m2, of the Laplacian
     Ghosts ghosts_;
     double sample_depth_;
     std::size_t chunk_blocks_; ///< room for the pairs of a chunk

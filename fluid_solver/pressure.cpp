@@ -4,7 +4,7 @@ namespace duet::fluid {
 
 namespace {
 
-constexpr float diffusion = 0.1F; ///< delta of the pressure's diffusion
+constexpr double diffusion = 0.1; ///< delta of the pressure's diffusion
 constexpr float share = 0.5F;     ///< phi: of the pressure's answer, what relaxes
 constexpr double relaxation = 6;  ///< its time, in h/c
 
@@ -35,7 +35,8 @@ void Pressure::accelerate(const Particles& particles,
     curvature_[a] = sums[2];
     const Drive& drive = drive_[a];
     const auto elapsed = static_cast<float>(time), step = static_cast<float>(inner.step);
-    if (const WallTerms* wall = evaluation.wall(a)) {
+    const WallTerms* wall = evaluation.wall(a);
+    if (wall != nullptr) {
         Vec2 b;
         if constexpr (Buoyancy) {
             const double T = particles.fields[a].T + time * evaluation.heating[a];
@@ -49,11 +50,12 @@ void Pressure::accelerate(const Particles& particles,
     Flow& flow = flow_[a];
     flow.u += step * (drive.x + elapsed * drive.rate_x - specific_volume * px);
     flow.v += step * (drive.y + elapsed * drive.rate_y - specific_volume * py);
-    if (const Friction* friction = evaluation.friction(a)) {
+    if (wall != nullptr && !wall->friction.none()) {
         // dv/dt = ... + k (v_start - v), implicitly; the first part is in the drive
-        const double k = 1 / (1 + inner.step * friction->across);
-        const double l = 1 / (1 + inner.step * friction->along);
-        const Vec2 v = friction->times({flow.u, flow.v}, k, l);
+        const Friction& friction = wall->friction;
+        const double across = 1 / (1 + inner.step * friction.across);
+        const double along = 1 / (1 + inner.step * friction.along);
+        const Vec2 v = friction.times({flow.u, flow.v}, across, along);
         flow.u = static_cast<float>(v.x);
         flow.v = static_cast<float>(v.y);
     }
@@ -66,9 +68,9 @@ void Pressure::accelerate(const Particles& particles,
 /// psi = sum 2 V F [ (p_a - p_b) - (grad p_a + grad p_b).x_ab / 2 ].
 /// Without relaxation (phi = 0) a uniform wind of c/10 makes waves of some seven spacings grow by
 /// 3 % a step, since v.grad p is taken at the step's start, and the sound of a room rings on.
+/// `relaxing` is P of the particle a.
 void Pressure::compress(const Evaluation& evaluation,
-                        const InnerSteps& inner,
-                        float kept,
+                        const Compression& terms,
                         float& relaxing,
                         std::size_t a) {
     const Flow& own = flow_[a];
@@ -92,8 +94,7 @@ void Pressure::compress(const Evaluation& evaluation,
         }
     }
     const Four sx = x0 + x1, sy = y0 + y1;
-    const auto c = static_cast<float>(inner.sound_speed);
-    auto stiffness = static_cast<float>(inner.density) * c * c;
+    float stiffness = terms.stiffness;
     float divergence = 0;
     if (const WallTerms* wall = evaluation.wall(a)) {
         const Correction& L = wall->L_velocity;
@@ -106,13 +107,11 @@ void Pressure::compress(const Evaluation& evaluation,
     }
     const WeightSum& w = evaluation.weight_sum[a];
     const float psi = 2 * curvature_[a] - (sx[2] + sy[3]) - 2 * (w.x * own.px + w.y * own.py);
-    const auto h = static_cast<float>(inner.smoothing_length);
-    const auto step = static_cast<float>(inner.step);
-    const float answer = step * (diffusion * h * c * psi - stiffness * divergence);
+    const float answer = terms.step * (terms.diffusion * psi - stiffness * divergence);
     const float before = relaxing;
-    relaxing = kept * (before + answer);
+    relaxing = terms.kept * (before + answer);
     next_p_[a] = p_[a] + (1 - share) * answer + share * (relaxing - before)
-                 + step * (own.u * own.px + own.v * own.py);
+                 + terms.step * (own.u * own.px + own.v * own.py);
 }
 
 template <bool Buoyancy>
@@ -134,20 +133,24 @@ void Pressure::run(Particles& particles, Evaluation& evaluation, const InnerStep
             force += inner.hydrostatics->departure(f.T, compartment);
             rate = evaluation.heating[a] * inner.hydrostatics->per_kelvin();
         }
-        if (const Friction* friction = evaluation.friction(a)) {
-            force += friction->times({f.u, f.v}, friction->across, friction->along);
+        if (const WallTerms* wall = evaluation.wall(a)) {
+            const Friction& friction = wall->friction;
+            force += friction.times({f.u, f.v}, friction.across, friction.along);
         }
         drive_[a] = {narrow(force.x), narrow(force.y), narrow(rate.x), narrow(rate.y)};
     });
-    const float kept =
-        narrow(1 / (1 + inner.step * inner.sound_speed / (relaxation * inner.smoothing_length)));
+    const double c = inner.sound_speed, h = inner.smoothing_length;
+    const Compression terms{narrow(inner.density * c * c),
+                            narrow(diffusion * h * c),
+                            narrow(inner.step),
+                            narrow(1 / (1 + inner.step * c / (relaxation * h)))};
     for (int s = 0; s < inner.count; ++s) {
         const double time = s * inner.step;
         for_particles(n, threads_, [&](std::size_t a) {
             accelerate<Buoyancy>(particles, evaluation, inner, time, a);
         });
         for_particles(n, threads_, [&](std::size_t a) {
-            compress(evaluation, inner, kept, particles.relaxing[a], a);
+            compress(evaluation, terms, particles.relaxing[a], a);
         });
         p_.swap(next_p_);
     }

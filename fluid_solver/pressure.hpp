@@ -40,6 +40,14 @@ class Pressure {
         float x, y, rate_x, rate_y;
     };
 
+    /// What the pressure's equation takes of the inner steps.
+    struct Compression {
+        float stiffness; ///< rho c^2, Pa
+        float diffusion; ///< delta h c, m2/s
+        float step;      ///< s
+        float kept;      ///< what a step leaves of P, 1/(1 + dt/tau)
+    };
+
     template <bool Buoyancy>
     void accelerate(const Particles& particles,
                     const Evaluation& evaluation,
@@ -47,8 +55,7 @@ class Pressure {
                     double time,
                     std::size_t a);
     void compress(const Evaluation& evaluation,
-                  const InnerSteps& inner,
-                  float kept,
+                  const Compression& terms,
                   float& relaxing,
                   std::size_t a);
 

@@ -15,6 +15,10 @@ using protocol::is_zero;
 
 void Checker::check_fluid() {
     check_initial_state();
+    if (scene_.fluid().fourth_order() && scene_.fluid().formulation() == v1::Fluid::PAPER)
+        problem("fluid.fourth_order",
+                "the paper's formulation has no Laplacian of fourth order; take the consistent "
+                "one, or leave fluid.fourth_order away");
     const std::string path = "fluid.region";
     if (scene_.fluid().has_disc() == (scene_.fluid().region_size() > 0))
         return problem("fluid",

@@ -61,6 +61,18 @@ TEST(SceneCheck, Walls) {
               std::string::npos);
 }
 
+TEST(SceneCheck, WhatThePapersFormulationHasNot) {
+    const std::string paper = "fluid.formulation=\"paper\"";
+    EXPECT_EQ(problems(good, {paper}), "");
+    EXPECT_EQ(problems(good, {"fluid.fourth_order=true"}), "");
+    EXPECT_NE(problems(good, {paper, "fluid.fourth_order=true"})
+                  .find("no Laplacian of fourth order; take the consistent one"),
+              std::string::npos);
+    EXPECT_NE(problems(good, {paper, "fluid.wall=[{ name = 'w', around = 'region', slip = true }]"})
+                  .find("knows no walls that slip"),
+              std::string::npos);
+}
+
 TEST(SceneCheck, PeriodicRegions) {
     expect_one({"fluid.periodic=\"x\""}, "");
     expect_fault("fluid.periodic=\"z\"", "none, x, y or both");
