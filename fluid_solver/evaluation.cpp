@@ -171,26 +171,11 @@ Four weight_sums(const DirectionWeights& d,
 /// The viscous term stays as it was at the outer step's start, and where c dt is about three
 /// spacings the sound of the inner steps swings round once meanwhile: what should damp a particle's
 /// part in it then drives it, and that grows if friction times the step exceeds 0.7. Inside the
-/// fluid it is 0.42 at most; beside a wall 0.8 and more, in a corner 1.0. So much may stay frozen:
-constexpr double frozen_across = 0.5, frozen_along = 0.8; // of a wall; in a corner the first
-
-/// What exceeds it, of the friction on u and v (walls that slip lie along an axis), 1/s.
-Friction following(const std::vector<Contact>& contacts,
-                   double of_u,
-                   double of_v,
-                   const EvaluationInput& input) {
-    const auto nearest =
-        std::min_element(contacts.begin(), contacts.end(), [](const Contact& a, const Contact& b) {
-            return a.distance < b.distance;
-        });
-    const Vec2 n = nearest->normal;
-    const bool corner = std::any_of(contacts.begin(), contacts.end(), [&](const Contact& other) {
-        return other.distance < input.spacing && std::abs(dot(other.normal, n)) < 0.9;
-    });
-    const double across = of_u * n.x * n.x + of_v * n.y * n.y, along = of_u + of_v - across;
-    return {n,
-            std::max(0.0, across - frozen_across / input.step),
-            std::max(0.0, along - (corner ? frozen_across : frozen_along) / input.step)};
+/// fluid it is 0.56 at most; beside a wall 1.0 and more, in a corner 1.3. So much may stay frozen,
+/// and this is what exceeds it, 1/s:
+double following(double friction, double step) {
+    constexpr double frozen = 0.5;
+    return std::max(0.0, friction - frozen / step);
 }
 
 /// The kernel's error along the axes of a lattice, m2: D f = lap f + error lap lap f + ... From
@@ -415,10 +400,6 @@ void Evaluation::beside_walls(std::size_t a,
     const double step = scene.input.step, nu = scene.input.viscosity;
     // Beside a wall of known temperature, closer than d1 = 0.2 dx or so, T would overshoot it.
     heating[a] /= std::max(1.0, -scene.input.diffusivity * step * own[3]);
-    Friction friction;
-    if (std::max(-own[0], -own[1]) * nu * step > frozen_across) {
-        friction = following(work.contacts, -nu * own[0], -nu * own[1], scene.input);
-    }
     auto& terms = wall_[a / chunk_size];
     wall_slot_[a] = static_cast<std::uint8_t>(terms.size());
     terms.push_back({narrow(L_velocity),
@@ -433,7 +414,7 @@ void Evaluation::beside_walls(std::size_t a,
                               sum_w,
                               L_velocity * sum_w + L_S,
                               scene.input.spacing),
-                     friction});
+                     {following(-nu * own[0], step), following(-nu * own[1], step)}});
     shift[a] = shift_vector(sum_w + w.C,
                             push_off(work.contacts, scene.input.spacing),
                             scene.input.shift_factor,

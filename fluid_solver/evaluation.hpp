@@ -25,14 +25,7 @@ struct WeightSum {
 
 /// What of the friction on a particle follows its velocity within the outer step, 1/s.
 struct Friction {
-    Vec2 normal;                  ///< of the nearest wall
-    double across = 0, along = 0; ///< that wall
-
-    bool none() const { return across == 0 && along == 0; }
-    /// The part of v across the wall times k, and that along it times l.
-    Vec2 times(Vec2 v, double k, double l) const {
-        return l * v + ((k - l) * dot(v, normal)) * normal;
-    }
+    double u = 0, v = 0;
 };
 
 /// What the walls add to the inner step of a particle near them.

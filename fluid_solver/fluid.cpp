@@ -10,11 +10,11 @@ namespace duet::fluid {
 
 namespace {
 
-constexpr double courant_flow = 0.3;        ///< of dx/U, outer step
-constexpr double courant_diffusion = 0.15;  ///< of dx^2/max(nu, alpha), outer step
-constexpr double courant_resonant = 0.11;   ///< of dx^2/nu, where c dt is 2 to 4 spacings
+constexpr double courant_flow = 0.4;        ///< of dx/U, outer step
+constexpr double courant_diffusion = 0.2;   ///< of dx^2/max(nu, alpha), outer step
 constexpr double courant_sound = 1.65;      ///< of dx/c, inner step (stable to 2.0)
-constexpr double courant_paper = 0.3;       ///< of dx/(c + U), the paper's single step
+constexpr double courant_paper = 0.3;       ///< of dx/(c + U), the paper's single step, and
+constexpr double paper_diffusion = 0.15;    ///< of dx^2/max(nu, alpha)
 constexpr double step_tolerance = 1.05;     ///< over the outer limit rather than twice the steps
 constexpr double follow_acceleration = 0.1; ///< share of a window's acceleration taken up at once
 
@@ -114,6 +114,7 @@ void Fluid::Implementation::set_fields(const std::function<Values(Vec2)>& field)
         const Values v = field(particles.position(a));
         particles.fields[a] = {v.velocity.x, v.velocity.y, v.pressure, v.temperature};
         particles.relaxing[a] = 0;
+        particles.acceleration[a] = {};
     }
     level();
     for (std::size_t a = 0; a < particles.size(); ++a) {
@@ -130,17 +131,14 @@ double Fluid::Implementation::stable_step() const {
     double limit = std::numeric_limits<double>::infinity();
     const double nu = still_ ? 0 : config.kinematic_viscosity;
     if (const double slowest = std::max(nu, diffusivity); slowest > 0) {
-        limit = std::min(limit, courant_diffusion * dx * dx / slowest);
+        const double share = paper_ ? paper_diffusion : courant_diffusion;
+        limit = std::min(limit, share * dx * dx / slowest);
     }
     if (fastest() > 0) {
         limit = std::min(limit, courant_flow * dx / fastest());
     }
     if (paper_) {
         return std::min(limit, courant_paper * dx / (sound_speed_ + fastest()));
-    }
-    // Where frozen friction meets the sound (evaluation.cpp: following), less of it.
-    if (const double way = sound_speed_ * limit / dx; way > 2 && way < 4 && nu > 0) {
-        limit = std::min(limit, courant_resonant * dx * dx / nu);
     }
     // Never so long that hundreds of inner steps share one geometry.
     return std::min(limit, 50 * courant_sound * dx / sound_speed_);

@@ -114,12 +114,18 @@ class CellGrid {
 
 class Fluid;
 
+/// m/s2, of a particle.
+struct Acceleration {
+    float x, y;
+};
+
 /// Structure of arrays; the fields u, v, p, T of one particle lie side by side.
 class Particles {
   public:
     std::vector<double> x, y;
     std::vector<Fields> fields;
-    std::vector<float> relaxing;         ///< P, Pa: what the pressure answered of late
+    std::vector<float> relaxing;            ///< P, Pa: what the pressure answered of late
+    std::vector<Acceleration> acceleration; ///< of late, by the outer steps
     std::vector<Slope> laplacian;        ///< of u, v, T in the step before, where it is asked for
     std::vector<std::uint32_t> identity; ///< constant through a run
     std::vector<std::uint16_t> compartment; ///< of the fluid's connected parts
@@ -141,6 +147,7 @@ class Particles {
     std::vector<double> spare_;
     std::vector<Fields> spare_fields_;
     std::vector<float> spare_relaxing_;
+    std::vector<Acceleration> spare_acceleration_;
     std::vector<Slope> spare_laplacian_;
     std::vector<std::uint32_t> spare_identity_;
     std::vector<std::uint16_t> spare_compartment_;

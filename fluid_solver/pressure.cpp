@@ -50,14 +50,9 @@ void Pressure::accelerate(const Particles& particles,
     Flow& flow = flow_[a];
     flow.u += step * (drive.x + elapsed * drive.rate_x - specific_volume * px);
     flow.v += step * (drive.y + elapsed * drive.rate_y - specific_volume * py);
-    if (wall != nullptr && !wall->friction.none()) {
-        // dv/dt = ... + k (v_start - v), implicitly; the first part is in the drive
-        const Friction& friction = wall->friction;
-        const double across = 1 / (1 + inner.step * friction.across);
-        const double along = 1 / (1 + inner.step * friction.along);
-        const Vec2 v = friction.times({flow.u, flow.v}, across, along);
-        flow.u = static_cast<float>(v.x);
-        flow.v = static_cast<float>(v.y);
+    if (wall != nullptr) { // of the friction that follows, what -k v does; the rest is in the drive
+        flow.u /= 1 + step * static_cast<float>(wall->friction.u);
+        flow.v /= 1 + step * static_cast<float>(wall->friction.v);
     }
     flow.px = px;
     flow.py = py;
@@ -134,8 +129,12 @@ void Pressure::run(Particles& particles, Evaluation& evaluation, const InnerStep
             rate = evaluation.heating[a] * inner.hydrostatics->per_kelvin();
         }
         if (const WallTerms* wall = evaluation.wall(a)) {
-            const Friction& friction = wall->friction;
-            force += friction.times({f.u, f.v}, friction.across, friction.along);
+            // k (v_start + a t - v), implicitly: what goes on as before is not slowed
+            const Friction& k = wall->friction;
+            const Acceleration& now = particles.acceleration[a];
+            const Vec2 faster{k.u * now.x, k.v * now.y};
+            force += Vec2{k.u * f.u, k.v * f.v} + inner.step * faster;
+            rate += faster;
         }
         drive_[a] = {narrow(force.x), narrow(force.y), narrow(rate.x), narrow(rate.y)};
     });
@@ -154,13 +153,18 @@ void Pressure::run(Particles& particles, Evaluation& evaluation, const InnerStep
         });
         p_.swap(next_p_);
     }
+    const double dt = inner.count * inner.step;
     for_particles(n, threads_, [&](std::size_t a) {
         Fields& f = particles.fields[a];
         const auto gain = [&](float now, double before) {
             return static_cast<double>(now) - static_cast<double>(narrow(before));
         };
-        f.u += gain(flow_[a].u, f.u);
-        f.v += gain(flow_[a].v, f.v);
+        const double u = gain(flow_[a].u, f.u), v = gain(flow_[a].v, f.v);
+        f.u += u;
+        f.v += v;
+        // The mean with the one before: sound that turns with each step is none.
+        Acceleration& late = particles.acceleration[a];
+        late = {narrow(0.5 * (late.x + u / dt)), narrow(0.5 * (late.y + v / dt))};
         f.p += gain(p_[a], f.p);
         evaluation.slope_x[a].p = flow_[a].px;
         evaluation.slope_y[a].p = flow_[a].py;

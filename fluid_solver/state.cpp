@@ -9,7 +9,7 @@ namespace duet::fluid {
 
 namespace {
 
-constexpr std::uint64_t state_mark = 0x3544554c46544455; // layout of the bytes below
+constexpr std::uint64_t state_mark = 0x3644554c46544455; // layout of the bytes below
 
 class Writer {
   public:
@@ -80,6 +80,7 @@ void Fluid::Implementation::transfer(Archive& archive, Self& self) {
     archive(self.particles.y);
     archive(self.particles.fields);
     archive(self.particles.relaxing);
+    archive(self.particles.acceleration);
     archive(self.particles.laplacian);
     archive(self.particles.identity);
     archive(self.particles.compartment);

@@ -59,6 +59,9 @@ struct Room {
         for (float& relaxing : particles.relaxing) {
             relaxing = static_cast<float>(one(random));
         }
+        for (Acceleration& late : particles.acceleration) {
+            late = {static_cast<float>(one(random)), static_cast<float>(one(random))};
+        }
         particles.compartment.assign(particles.size(), 0);
         evaluation.run(particles,
                        boundary->grid(),
@@ -279,6 +282,7 @@ void expect_inner_step_of_twin(const Config& config) {
     Room room(config);
     const std::vector<Fields> old = room.particles.fields;
     const std::vector<float> old_relaxing = room.particles.relaxing;
+    const std::vector<Acceleration> old_acceleration = room.particles.acceleration;
     Hydrostatics hydrostatics(density, 0.2, {3, -40});
     hydrostatics.levels.resize(1);
     hydrostatics.levels[0] = {{0.4, 0.4}, {0.5, 0.5}};
@@ -296,7 +300,7 @@ void expect_inner_step_of_twin(const Config& config) {
     std::vector<Vec2> slope(n), velocity(n);
     std::vector<WallSums> sums(n);
     std::vector<Contact> contacts;
-    Largest moved, pressed;
+    Largest moved, accelerated, pressed;
     int slowed = 0;
     for (std::size_t a = 0; a < n; ++a) {
         sums[a] = wall_sums(room, a, contacts);
@@ -309,25 +313,28 @@ void expect_inner_step_of_twin(const Config& config) {
         const Vec2 b = (old[a].T - 0.4) * Vec2{3, -40};
         slope[a] = inverse(M) * (differences + density * (sums[a].N_n * b));
         const Vec2 push = room.evaluation.viscous[a] + b - (1 / density) * slope[a];
-        const auto friction =
-            [&](const DirichletSums& known, const NeumannSums& slips, int lane, double frozen) {
-                const double own = own_share(room, a, walls_of(sums[a], known, slips, lane));
-                return contacts.empty() ? 0 : std::max(0.0, -viscosity * own - frozen / outer_step);
-            };
-        // More of it stays frozen along the nearest wall; all of them lie along the axes.
-        double to_x = 1e9, to_y = 1e9;
-        for (const Contact& contact : contacts) {
-            double& to = std::abs(contact.normal.x) > 0.5 ? to_x : to_y;
-            to = std::min(to, contact.distance);
-        }
-        const bool corner = to_x < spacing && to_y < spacing;
-        const double kx =
-            friction(sums[a].u, sums[a].u_slips, 0, corner || to_x < to_y ? 0.5 : 0.8);
-        const double ky =
-            friction(sums[a].v, sums[a].v_slips, 1, corner || to_y < to_x ? 0.5 : 0.8);
+        const auto friction = [&](const DirichletSums& known, const NeumannSums& slips, int lane) {
+            const double own = own_share(room, a, walls_of(sums[a], known, slips, lane));
+            return contacts.empty() ? 0 : std::max(0.0, -viscosity * own - 0.5 / outer_step);
+        };
+        const double kx = friction(sums[a].u, sums[a].u_slips, 0);
+        const double ky = friction(sums[a].v, sums[a].v_slips, 1);
         slowed += kx > 0 || ky > 0 ? 1 : 0;
-        velocity[a] = {old[a].u + inner_step * push.x / (1 + inner_step * kx),
-                       old[a].v + inner_step * push.y / (1 + inner_step * ky)};
+        const auto changed = [](double force, double k, double late) {
+            return inner_step * (force + k * inner_step * late) / (1 + inner_step * k);
+        };
+        const Acceleration& late = old_acceleration[a];
+        velocity[a] = {old[a].u + changed(push.x, kx, static_cast<double>(late.x)),
+                       old[a].v + changed(push.y, ky, static_cast<double>(late.y))};
+        const Acceleration& now = room.particles.acceleration[a];
+        const auto mean = [](double before, double change) {
+            return 0.5 * (before + change / inner_step);
+        };
+        accelerated.see(norm(Vec2{mean(static_cast<double>(late.x), stepped[a].u - old[a].u)
+                                      - static_cast<double>(now.x),
+                                  mean(static_cast<double>(late.y), stepped[a].v - old[a].v)
+                                      - static_cast<double>(now.y)}),
+                        3e-7 / inner_step);
         moved.see(norm(velocity[a] - Vec2{stepped[a].u, stepped[a].v}), 3e-7);
     }
     for (std::size_t a = 0; a < n; ++a) {
@@ -356,6 +363,7 @@ void expect_inner_step_of_twin(const Config& config) {
         pressed.see(static_cast<double>(room.particles.relaxing[a]) - relaxing, bound);
     }
     EXPECT_LT(moved.value, 1);
+    EXPECT_LT(accelerated.value, 1);
     EXPECT_EQ(slowed > 20, !room.boundary->none_at_all());
     EXPECT_LT(pressed.value, 1);
 }
