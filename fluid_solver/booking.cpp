@@ -1,23 +1,8 @@
-// What is booked in a step: heat, impulse and work through the walls, the body forces, the
-// dissipation.
+// What is booked in a step: heat, impulse and work through the walls.
 
 #include "fluid_solver/implementation.hpp"
 
 namespace duet::fluid {
-
-/// m/s2 on a particle: buoyancy and the given force.
-Vec2 Fluid::Implementation::body_force(std::size_t a) const {
-    return (buoyant_ ? hydrostatics_.force(particles.fields[a].T) : Vec2{})
-           + (forced_ ? given_force_[a] : Vec2{});
-}
-
-/// Books the impulse of the body forces in this step.
-void Fluid::Implementation::book_body_force(double dt) {
-    if (buoyant_ || forced_) {
-        totals_.impulse_from_body_force +=
-            (dt * config.density * volume) * sum([&](std::size_t a) { return body_force(a); });
-    }
-}
 
 Vec2 Fluid::Implementation::momentum() const {
     const double m = config.density * volume;
@@ -48,7 +33,6 @@ void Fluid::Implementation::book(double dt) {
         hydrostatics_,
         {config.conductivity, config.kinematic_viscosity, config.density, config.heat_capacity},
         given_force_);
-    book_body_force(dt);
     passed_heat_.assign(compartments, 0);
     for (std::size_t c = 0; c < boundary_.cells().size(); ++c) {
         const double length = boundary_.cells()[c].length;
@@ -88,26 +72,6 @@ void Fluid::Implementation::pass(std::uint32_t c, double heat, Vec2 impulse) {
         wall.force += impulse;
         wall.torque += cross(segment.a + cell.centre * (segment.b - segment.a), impulse);
     }
-}
-
-/// Books the power of the body forces and, with what the walls' shear put in (book()), the viscous
-/// loss: what the viscous term takes from the motion, -sum m v.(nu lap v). (2 mu D:D sampled at the
-/// particles misses a quarter of it in layers a few spacings thin.)
-void Fluid::Implementation::book_energy(double dt) {
-    const double mass = config.density * volume;
-    struct Power {
-        double forces = 0, viscous = 0;
-        Power& operator+=(const Power& o) {
-            return forces += o.forces, viscous += o.viscous, *this;
-        }
-    };
-    const Power power = sum([&](std::size_t a) {
-        const Fields& f = particles.fields[a];
-        const Vec2 v{f.u, f.v}, given = forced_ ? given_force_[a] : Vec2{};
-        return Power{dot(body_force(a), v), dot(evaluation_.viscous[a] - given, v)};
-    });
-    totals_.body_force_work += dt * mass * power.forces;
-    totals_.viscous_loss -= dt * mass * power.viscous;
 }
 
 } // namespace duet::fluid

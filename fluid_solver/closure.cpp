@@ -68,6 +68,7 @@ ClosureParts Closure::advance_temperature(Particles& particles,
         const Share& share = shares_[particles.compartment[a]];
         const double gain = gained_by_shift(evaluation, a);
         const double weight = std::abs(evaluation.heating[a]);
+        particles.rate[a].T = recent(particles.rate[a].T, evaluation.heating[a]);
         particles.fields[a].T += step * evaluation.heating[a] + gain + share.all * weight
                                  + (evaluation.near_heated[a] ? share.heated * weight : 0)
                                  + share.shift * std::abs(gain) + share.even;

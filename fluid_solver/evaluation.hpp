@@ -114,25 +114,22 @@ class Evaluation {
         const CellGrid& grid;
         const Boundary& boundary;
         const EvaluationInput& input;
+        const std::vector<Fields>& fields; ///< of the particles
     };
     void resize(std::size_t n);
+    void predict(const Particles& particles, double ahead);
     template <bool Heat>
     bool
     gather(std::size_t a, const Particles& particles, const Scene& scene, Scratch& s, Work& work);
     void interior(std::size_t a,
-                  const Particles& particles,
+                  const std::vector<Slope>& deferred,
                   const Scene& scene,
                   const Scratch& s,
                   const Work& work);
-    void beside_walls(std::size_t a,
-                      const Particles& particles,
-                      const Scene& scene,
-                      const Scratch& s,
-                      const Work& work);
+    void beside_walls(std::size_t a, const Scene& scene, const Scratch& s, const Work& work);
     void store_diffusion(std::size_t a, const EvaluationInput& input, const Four& laplacian);
     void take_samples(std::size_t a,
-                      const Particles& particles,
-                      const Boundary& boundary,
+                      const Scene& scene,
                       const std::vector<Contact>& contacts,
                       std::vector<WallSample>& out) const;
     /// Returns false if particles have more neighbours than there is room for.
@@ -153,6 +150,7 @@ class Evaluation {
     double sample_depth_;
     std::size_t chunk_blocks_; ///< room for the pairs of a chunk
     std::vector<PairBlock> pairs_;
+    std::vector<Fields> predicted_;          ///< in the middle of the step
     std::vector<std::uint16_t> first_block_; ///< of a particle in its chunk
     std::vector<std::uint8_t> wall_slot_;    ///< in its chunk
     std::vector<std::vector<WallTerms>> wall_;

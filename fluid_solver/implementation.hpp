@@ -130,12 +130,9 @@ class Fluid::Implementation {
     void check_gaps(double now);
 
     // booking.cpp
-    Vec2 body_force(std::size_t a) const;
-    void book_body_force(double dt);
     Vec2 momentum() const;
     void close_momentum();
     void book(double dt);
-    void book_energy(double dt);
     Vec2 wall_velocity(std::size_t cell) const;
     void pass(std::uint32_t cell, double heat, Vec2 impulse);
 

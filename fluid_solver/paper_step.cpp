@@ -23,7 +23,13 @@ void Fluid::Implementation::paper_step(double dt, double elapsed, const Motion& 
                 material,
                 volume,
                 given_force_);
-    book_body_force(dt);
+    if (buoyant_ || forced_) {
+        totals_.impulse_from_body_force +=
+            (dt * config.density * volume) * sum([&](std::size_t a) {
+                return (buoyant_ ? hydrostatics_.force(particles.fields[a].T) : Vec2{})
+                       + (forced_ ? given_force_[a] : Vec2{});
+            });
+    }
     for_particles(particles.size(), config.threads, [&](std::size_t a) {
         Fields& f = particles.fields[a];
         f.u += dt * paper_->acceleration[a].x;

@@ -32,7 +32,7 @@ void Particles::resize(std::size_t n) {
     y.resize(n);
     fields.resize(n);
     relaxing.resize(n);
-    acceleration.resize(n);
+    rate.resize(n);
     identity.resize(n);
     compartment.resize(n);
 }
@@ -77,8 +77,8 @@ void Particles::sort(const CellGrid& grid, int threads) {
     reorder(y, spare_, target_, threads);
     reorder(fields, spare_fields_, target_, threads);
     reorder(relaxing, spare_relaxing_, target_, threads);
-    reorder(acceleration, spare_acceleration_, target_, threads);
-    reorder(laplacian, spare_laplacian_, target_, threads);
+    reorder(rate, spare_slope_, target_, threads);
+    reorder(laplacian, spare_slope_, target_, threads);
     reorder(identity, spare_identity_, target_, threads);
     reorder(compartment, spare_compartment_, target_, threads);
 }

@@ -110,7 +110,7 @@ void Pressure::compress(const Evaluation& evaluation,
 }
 
 template <bool Buoyancy>
-void Pressure::run(Particles& particles, Evaluation& evaluation, const InnerSteps& inner) {
+Given Pressure::run(Particles& particles, Evaluation& evaluation, const InnerSteps& inner) {
     const std::size_t n = particles.size();
     flow_.resize(n);
     drive_.resize(n);
@@ -131,9 +131,9 @@ void Pressure::run(Particles& particles, Evaluation& evaluation, const InnerStep
         if (const WallTerms* wall = evaluation.wall(a)) {
             // k (v_start + a t - v), implicitly: what goes on as before is not slowed
             const Friction& k = wall->friction;
-            const Acceleration& now = particles.acceleration[a];
-            const Vec2 faster{k.u * now.x, k.v * now.y};
-            force += Vec2{k.u * f.u, k.v * f.v} + inner.step * faster;
+            const Slope& now = particles.rate[a];
+            const Vec2 faster{k.u * static_cast<double>(now.u), k.v * static_cast<double>(now.v)};
+            force += Vec2{k.u * f.u, k.v * f.v} + (0.5 * inner.step) * faster;
             rate += faster;
         }
         drive_[a] = {narrow(force.x), narrow(force.y), narrow(rate.x), narrow(rate.y)};
@@ -144,7 +144,7 @@ void Pressure::run(Particles& particles, Evaluation& evaluation, const InnerStep
                             narrow(inner.step),
                             narrow(1 / (1 + inner.step * c / (relaxation * h)))};
     for (int s = 0; s < inner.count; ++s) {
-        const double time = s * inner.step;
+        const double time = (s + 0.5) * inner.step; // in the middle
         for_particles(n, threads_, [&](std::size_t a) {
             accelerate<Buoyancy>(particles, evaluation, inner, time, a);
         });
@@ -154,24 +154,42 @@ void Pressure::run(Particles& particles, Evaluation& evaluation, const InnerStep
         p_.swap(next_p_);
     }
     const double dt = inner.count * inner.step;
-    for_particles(n, threads_, [&](std::size_t a) {
+    const auto finish = [&](std::size_t a) {
         Fields& f = particles.fields[a];
         const auto gain = [&](float now, double before) {
             return static_cast<double>(now) - static_cast<double>(narrow(before));
         };
         const double u = gain(flow_[a].u, f.u), v = gain(flow_[a].v, f.v);
+        const Vec2 mean{f.u + 0.5 * u, f.v + 0.5 * v};
         f.u += u;
         f.v += v;
-        // The mean with the one before: sound that turns with each step is none.
-        Acceleration& late = particles.acceleration[a];
-        late = {narrow(0.5 * (late.x + u / dt)), narrow(0.5 * (late.y + v / dt))};
         f.p += gain(p_[a], f.p);
+        Slope& rate = particles.rate[a];
+        rate.u = recent(rate.u, u / dt);
+        rate.v = recent(rate.v, v / dt);
         evaluation.slope_x[a].p = flow_[a].px;
         evaluation.slope_y[a].p = flow_[a].py;
+        Vec2 force = inner.given_force.empty() ? Vec2{} : inner.given_force[a];
+        const Vec2 viscous = evaluation.viscous[a] - force;
+        if constexpr (Buoyancy) {
+            force += inner.hydrostatics->force(f.T + 0.5 * dt * evaluation.heating[a]);
+        }
+        return Given{dt * force, dt * dot(force, mean), dt * dot(viscous, mean)};
+    };
+    given_.assign(chunks_of(n), {});
+    for_chunks(n, threads_, [&](std::size_t chunk, std::size_t first, std::size_t last) {
+        for (std::size_t a = first; a < last; ++a) {
+            given_[chunk] += finish(a);
+        }
     });
+    Given all;
+    for (const Given& part : given_) {
+        all += part;
+    }
+    return all;
 }
 
-template void Pressure::run<false>(Particles&, Evaluation&, const InnerSteps&);
-template void Pressure::run<true>(Particles&, Evaluation&, const InnerSteps&);
+template Given Pressure::run<false>(Particles&, Evaluation&, const InnerSteps&);
+template Given Pressure::run<true>(Particles&, Evaluation&, const InnerSteps&);
 
 } // namespace duet::fluid

@@ -19,6 +19,22 @@ struct InnerSteps {
     double sound_speed = 0; ///< m/s
     const Hydrostatics* hydrostatics = nullptr;
     double smoothing_length = 0;
+    std::span<const Vec2>
+        given_force; ///< m/s2, by particle, beside the buoyancy; empty without one
+};
+
+/// What body forces and the viscous term gave to the particles in a group of inner steps, for a
+/// mass of one each: impulses, m/s, and works by the mean of the velocities before and after.
+struct Given {
+    Vec2 impulse;                                 ///< of buoyancy and given force
+    double body_force_work = 0, viscous_work = 0; ///< m2/s2
+
+    Given& operator+=(const Given& o) {
+        impulse += o.impulse;
+        body_force_work += o.body_force_work;
+        viscous_work += o.viscous_work;
+        return *this;
+    }
 };
 
 class Pressure {
@@ -26,9 +42,10 @@ class Pressure {
     explicit Pressure(int threads) : threads_(threads) {}
 
     /// Advances u, v, p and P of the particles by `count` steps and leaves the last gradient of p
-    /// in the evaluation's slopes. With Buoyancy the body force follows T + t dT/dt.
+    /// in the evaluation's slopes. With Buoyancy the body force follows T + t dT/dt. Returns the
+    /// sums over the particles.
     template <bool Buoyancy>
-    void run(Particles& particles, Evaluation& evaluation, const InnerSteps& inner);
+    Given run(Particles& particles, Evaluation& evaluation, const InnerSteps& inner);
 
   private:
     /// Velocity and gradient of p of one particle, gathered together.
@@ -63,6 +80,7 @@ class Pressure {
     std::vector<Flow> flow_;
     std::vector<Drive> drive_;
     std::vector<float> p_, next_p_;
+    std::vector<Given> given_;     ///< by chunk
     std::vector<float> curvature_; ///< sum V F (p_a - p_b)
 };
 

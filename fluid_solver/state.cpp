@@ -80,7 +80,7 @@ void Fluid::Implementation::transfer(Archive& archive, Self& self) {
     archive(self.particles.y);
     archive(self.particles.fields);
     archive(self.particles.relaxing);
-    archive(self.particles.acceleration);
+    archive(self.particles.rate);
     archive(self.particles.laplacian);
     archive(self.particles.identity);
     archive(self.particles.compartment);

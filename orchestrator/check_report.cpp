@@ -22,8 +22,8 @@ constexpr double node_steps_per_second = 1e8;       // heat steps of a solid's n
 constexpr double bytes_per_particle = 1500;
 constexpr double bytes_per_node = 500;
 constexpr double bytes_of_a_process = 30e6;
-constexpr double diffusive_share = 0.2; // outer step: 0.2 spacing^2 / max(nu, alpha)
-constexpr double flow_share = 0.4;      // outer step: 0.4 spacing / speed
+constexpr double diffusive_share = 0.18; // outer step: 0.18 spacing^2 / max(nu, alpha)
+constexpr double flow_share = 0.4;       // outer step: 0.4 spacing / speed
 
 std::string number(double value) {
     char text[32];

@@ -109,7 +109,7 @@ growth_beside_friction(Vec2 size, Vec2 place, double courant, int n, Periodic pe
     Particles particles = cloud(boundary, config, 0);
     put_closest(particles, place);
     press_at_random(particles, 0, 1e-6);
-    const double friction = 1.05 * 0.2; // as in Fluid::Implementation::stable_step
+    const double friction = 1.05 * 0.18; // as in Fluid::Implementation::stable_step
     double before = 0;
     for (int step = 0; step < 150; ++step) {
         before = step == 100 ? energy(particles) : before;

@@ -59,8 +59,9 @@ struct Room {
         for (float& relaxing : particles.relaxing) {
             relaxing = static_cast<float>(one(random));
         }
-        for (Acceleration& late : particles.acceleration) {
-            late = {static_cast<float>(one(random)), static_cast<float>(one(random))};
+        const auto single = [&] { return static_cast<float>(one(random)); };
+        for (Slope& rate : particles.rate) {
+            rate = {single(), single(), 0, single()};
         }
         particles.compartment.assign(particles.size(), 0);
         evaluation.run(particles,
@@ -282,7 +283,7 @@ void expect_inner_step_of_twin(const Config& config) {
     Room room(config);
     const std::vector<Fields> old = room.particles.fields;
     const std::vector<float> old_relaxing = room.particles.relaxing;
-    const std::vector<Acceleration> old_acceleration = room.particles.acceleration;
+    const std::vector<Slope> old_rate = room.particles.rate;
     Hydrostatics hydrostatics(density, 0.2, {3, -40});
     hydrostatics.levels.resize(1);
     hydrostatics.levels[0] = {{0.4, 0.4}, {0.5, 0.5}};
@@ -310,7 +311,8 @@ void expect_inner_step_of_twin(const Config& config) {
             M += outer(-VF * x, x);
             differences += (VF * (old[b].p - old[a].p)) * x;
         });
-        const Vec2 b = (old[a].T - 0.4) * Vec2{3, -40};
+        const double T = old[a].T + 0.5 * inner_step * room.evaluation.heating[a];
+        const Vec2 b = (T - 0.4) * Vec2{3, -40};
         slope[a] = inverse(M) * (differences + density * (sums[a].N_n * b));
         const Vec2 push = room.evaluation.viscous[a] + b - (1 / density) * slope[a];
         const auto friction = [&](const DirichletSums& known, const NeumannSums& slips, int lane) {
@@ -323,17 +325,17 @@ void expect_inner_step_of_twin(const Config& config) {
         const auto changed = [](double force, double k, double late) {
             return inner_step * (force + k * inner_step * late) / (1 + inner_step * k);
         };
-        const Acceleration& late = old_acceleration[a];
-        velocity[a] = {old[a].u + changed(push.x, kx, static_cast<double>(late.x)),
-                       old[a].v + changed(push.y, ky, static_cast<double>(late.y))};
-        const Acceleration& now = room.particles.acceleration[a];
+        const Slope& late = old_rate[a];
+        velocity[a] = {old[a].u + changed(push.x, kx, static_cast<double>(late.u)),
+                       old[a].v + changed(push.y, ky, static_cast<double>(late.v))};
+        const Slope& now = room.particles.rate[a];
         const auto mean = [](double before, double change) {
             return 0.5 * (before + change / inner_step);
         };
-        accelerated.see(norm(Vec2{mean(static_cast<double>(late.x), stepped[a].u - old[a].u)
-                                      - static_cast<double>(now.x),
-                                  mean(static_cast<double>(late.y), stepped[a].v - old[a].v)
-                                      - static_cast<double>(now.y)}),
+        accelerated.see(norm(Vec2{mean(static_cast<double>(late.u), stepped[a].u - old[a].u)
+                                      - static_cast<double>(now.u),
+                                  mean(static_cast<double>(late.v), stepped[a].v - old[a].v)
+                                      - static_cast<double>(now.v)}),
                         3e-7 / inner_step);
         moved.see(norm(velocity[a] - Vec2{stepped[a].u, stepped[a].v}), 3e-7);
     }
