@@ -35,7 +35,7 @@ int main(int argc, char** argv) {
     const std::clock_t start = std::clock();
     int steps = 0;
     while (steps < std::atoi(argv[2])) {
-        steps += fluid.advance(fluid.stable_step());
+        steps += fluid.advance(0.75 * fluid.stable_step()); // two inner steps in each
     }
     const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
     rusage usage{};

@@ -50,13 +50,16 @@ void Fluid::Implementation::mark() {
 
 namespace {
 
-/// Weighted least squares for a quadratic (six terms, scaled by the support) or, with too few
-/// points, a plane or a constant about the point asked for.
+/// Weighted least squares of some fields at once for a quadratic (six terms, scaled by the support)
+/// or, with too few points, a plane or a constant about the point asked for.
+template <int fields>
 class LocalFit {
   public:
     using Row = Eigen::Matrix<double, 6, 1>;
+    using Normal = Eigen::Matrix<double, 6, 6>;
+    using Right = Eigen::Matrix<double, 6, fields>;
 
-    LocalFit(const Eigen::Matrix<double, 6, 6>& normal, const Row& right, int points)
+    LocalFit(const Normal& normal, const Right& right, int points)
         : normal_(normal), right_(right), points_(points) {}
 
     void add(const Row& row, double weight, double value) {
@@ -64,44 +67,41 @@ class LocalFit {
         right_ += weight * value * row;
         ++points_;
     }
-    /// The polynomial's value and scaled gradient at the point.
-    struct Result {
-        double value;
-        Vec2 slope;
-    };
-    Result result() const {
-        if (const auto c = solve<6>()) {
-            return {(*c)[0], {(*c)[1], (*c)[2]}};
+    /// By columns the fields' values and scaled gradients at the point: value, along x, along y.
+    Eigen::Matrix<double, 3, fields> result() const {
+        Eigen::Matrix<double, 3, fields> all;
+        all.setZero();
+        if (const auto quadratic = solve<6>()) {
+            all = quadratic->template topRows<3>();
+        } else if (const auto plane = solve<3>()) {
+            all = *plane;
+        } else if (const auto constant = solve<1>()) {
+            all.row(0) = *constant;
+        } else {
+            all.setConstant(std::numeric_limits<double>::quiet_NaN());
         }
-        if (const auto c = solve<3>()) {
-            return {(*c)[0], {(*c)[1], (*c)[2]}};
-        }
-        if (const auto c = solve<1>()) {
-            return {(*c)[0], {}};
-        }
-        const double nan = std::numeric_limits<double>::quiet_NaN();
-        return {nan, {nan, nan}};
+        return all;
     }
 
   private:
-    Eigen::Matrix<double, 6, 6> normal_;
-    Row right_;
+    Normal normal_;
+    Right right_;
     int points_;
 
     /// The first `terms` coefficients, if the points determine them. (The ratio of the pivots
     /// bounds the condition well enough for so few terms.)
     template <int terms>
-    std::optional<Eigen::Matrix<double, terms, 1>> solve() const {
+    std::optional<Eigen::Matrix<double, terms, fields>> solve() const {
         if (points_ < terms) {
             return {};
         }
         const Eigen::LDLT<Eigen::Matrix<double, terms, terms>> factor(
-            normal_.topLeftCorner<terms, terms>());
+            normal_.template topLeftCorner<terms, terms>());
         const auto pivots = factor.vectorD();
         if (!(pivots.minCoeff() > 1e-10 * pivots.maxCoeff())) {
             return {};
         }
-        return factor.solve(right_.head<terms>());
+        return factor.solve(right_.template topRows<terms>());
     }
 };
 
@@ -124,7 +124,7 @@ Values Fluid::Implementation::at(Vec2 point) const {
     boundary_.contacts(point, contacts);
     const auto terms = [R](Vec2 r) {
         const double x = r.x / R, y = r.y / R;
-        return LocalFit::Row{1, x, y, x * x, x * y, y * y};
+        return LocalFit<1>::Row{1, x, y, x * x, x * y, y * y};
     };
     // The particles count alike for u, v, p and T.
     Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
@@ -139,14 +139,18 @@ Values Fluid::Implementation::at(Vec2 point) const {
                 const Fields& f = particles.fields[a];
                 const double head =
                     hydrostatics_.pressure(particles.position(a), particles.compartment[a]);
-                const LocalFit::Row one = terms(r), weighted = kernel.value(norm(r)) * one;
+                const LocalFit<1>::Row one = terms(r), weighted = kernel.value(norm(r)) * one;
                 normal += weighted * one.transpose();
                 right += weighted * Eigen::RowVector4d(f.u, f.v, f.p + head, f.T);
                 ++points;
             }
         }
     });
-    LocalFit u(normal, right.col(0), points), v(normal, right.col(1), points),
+    if (contacts.empty()) {
+        const auto f = LocalFit<4>(normal, right, points).result();
+        return {f(0, 3), {f(0, 0), f(0, 1)}, f(0, 2), (1 / R) * Vec2{f(1, 3), f(2, 3)}};
+    }
+    LocalFit<1> u(normal, right.col(0), points), v(normal, right.col(1), points),
         p(normal, right.col(2), points), T(normal, right.col(3), points);
     // Walls contribute what is known of them, at points half a spacing apart.
     for (const Contact& contact : contacts) {
@@ -169,11 +173,11 @@ Values Fluid::Implementation::at(Vec2 point) const {
             }
         }
     }
-    const LocalFit::Result temperature = T.result();
-    return {temperature.value,
-            {u.result().value, v.result().value},
-            p.result().value,
-            (1 / R) * temperature.slope};
+    const auto temperature = T.result();
+    return {temperature[0],
+            {u.result()[0], v.result()[0]},
+            p.result()[0],
+            (1 / R) * Vec2{temperature[1], temperature[2]}};
 }
 
 Snapshot Fluid::Implementation::snapshot() const {

@@ -21,6 +21,6 @@ if(CMAKE_BUILD_TYPE STREQUAL "Release" AND DUET_NATIVE)
     add_executable(fluid_steps performance/fluid_steps.cpp)
     target_link_libraries(fluid_steps PRIVATE duet_fluid_core)
     add_test(NAME performance.fluid_instructions
-        COMMAND /usr/bin/python3 ${CMAKE_CURRENT_SOURCE_DIR}/performance/instructions.py $<TARGET_FILE:fluid_steps> 3770)
+        COMMAND /usr/bin/python3 ${CMAKE_CURRENT_SOURCE_DIR}/performance/instructions.py $<TARGET_FILE:fluid_steps> 3700)
     set_tests_properties(performance.fluid_instructions PROPERTIES LABELS performance TIMEOUT 120 SKIP_RETURN_CODE 77)
 endif()
