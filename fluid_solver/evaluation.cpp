@@ -171,7 +171,7 @@ Four weight_sums(const DirectionWeights& d,
 /// The viscous term stays as it was at the outer step's start, and where c dt is about three
 /// spacings the sound of the inner steps swings round once meanwhile: what should damp a particle's
 /// part in it then drives it, and that grows if friction times the step exceeds 0.7. Inside the
-/// fluid it is 0.56 at most; beside a wall 1.0 and more, in a corner 1.3. So much may stay frozen,
+/// fluid it is 0.5 at most; beside a wall 0.9 and more, in a corner 1.2. So much may stay frozen,
 /// and this is what exceeds it, 1/s:
 double following(double friction, double step) {
     constexpr double frozen = 0.5;
