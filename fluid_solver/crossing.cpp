@@ -80,13 +80,16 @@ void Fluid::Implementation::hold_off_walls(const HalfStep& half) {
     for (std::size_t i = 0; i < interface_before_.size(); ++i) {
         wall_way = std::max(wall_way, norm(interface_position_[i] - interface_before_[i]));
     }
+    // At the end of a step the evaluation in its middle knows what is within reach of walls.
+    const bool looked = half.with_shift && !paper_ && wall_way < config.spacing;
     held_.resize(chunks_of(particles.size()));
     for_chunks(
         particles.size(), config.threads, [&](std::size_t c, std::size_t first, std::size_t last) {
             held_[c].touches.clear();
             held_[c].escaped.reset();
             for (std::size_t a = first; a < last; ++a) {
-                if (boundary_.near(particles.position(a))) {
+                if (looked ? evaluation_.wall(a) != nullptr
+                           : boundary_.near(particles.position(a))) {
                     hold_off(a, half, wall_way, held_[c]);
                 }
             }

@@ -45,7 +45,11 @@ def read(path):
     finished = [row for row in rows if row["ended"] == "finished"]
     if not checks or not finished:
         fail(f"{path} holds no run that finished and was held against a check")
-    return finished, names[: names.index(checks[0])], checks
+    keys = names[: names.index(checks[0])]
+    for row in finished:
+        others = [f"{key.split('.')[-1]} = {row[key]}" for key in keys[1:]]
+        row["line"] = ", ".join(others) or "".join(keys[:1])
+    return finished, keys, checks
 
 
 def chosen(checks, wanted):
@@ -64,13 +68,20 @@ def cpu_seconds(row):
     return sum(float(row[name]) for name in row if name.startswith("cpu_seconds_"))
 
 
+def short(value):
+    """A number of many digits with four of them."""
+    try:
+        return f"{float(value):.4g}"
+    except ValueError:
+        return value
+
+
 def lines(rows, keys, check):
     """{label: [(cpu, error, value of the first key)]}, each in the order of its cost."""
     out = {}
     for row in rows:
         if float(row[check] or 0) > 0:
-            label = ", ".join(row[key] for key in keys[1:]) or keys[0]
-            out.setdefault(label, []).append((cpu_seconds(row), float(row[check]), row[keys[0]]))
+            out.setdefault(row["line"], []).append((cpu_seconds(row), float(row[check]), short(row[keys[0]])))
     return {label: sorted(points) for label, points in out.items()}
 
 

@@ -103,8 +103,11 @@ class Plots(unittest.TestCase):
         table.write_text("\n".join([head, *rows]) + "\n")
         both = self.folder / "both.png"
         one = self.folder / "one.png"
-        for options in (("-o", both), ("--check", "nu", "-o", one)):
-            result = run("plot_sweep.py", table, *options)
+        other = self.folder / "other.csv"  # beside it, with other keys varied
+        other.write_text(table.read_text().replace("formulation", "fourth_order").replace("paper", "true"))
+        for options in ((table, "-o", both), (table, "--check", "nu", "-o", one),
+                        (table, other, "-o", self.folder / "beside.png")):
+            result = run("plot_sweep.py", *options)
             self.assertEqual(result.returncode, 0, result.stderr)
         self.assertGreater(matplotlib.image.imread(both).shape[1], matplotlib.image.imread(one).shape[1])
         self.assertIn("there is no check lift; there is nu; mean, v",
