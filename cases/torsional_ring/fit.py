@@ -25,6 +25,8 @@ def fit(time, swing):
     return found[2], found[1]
 
 
+if len(sys.argv) != 2 or not (pathlib.Path(sys.argv[1]) / "probes.csv").is_file():
+    sys.exit("give the folder of a run of this case, which holds probes.csv: fit.py RUN")
 run = fit(*column(pathlib.Path(sys.argv[1]) / "probes.csv", "swing"))
 reference = fit(*column(pathlib.Path(__file__).parent / "reference" / "swing.csv", "rim[m]"))
 for name, unit, value, exact in zip(("frequency", "decay"), ("rad/s", "1/s"), run, reference):
