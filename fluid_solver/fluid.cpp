@@ -10,7 +10,10 @@ namespace duet::fluid {
 
 namespace {
 
-constexpr double courant_flow = 0.4;        ///< of dx/U, outer step
+constexpr double courant_flow = 0.3;        ///< of dx/U, outer step, and up to
+constexpr double courant_smooth = 0.4;      ///< where friction keeps the flow smooth: dx U/nu is
+constexpr double smooth_reynolds = 20;      ///< no more than this, and the sound goes no farther
+constexpr double smooth_way = 5;            ///< than so many spacings on one geometry
 constexpr double courant_diffusion = 0.18;  ///< of dx^2/max(nu, alpha), outer step
 constexpr double courant_sound = 1.65;      ///< of dx/c, inner step (stable to 2.0)
 constexpr double courant_paper = 0.3;       ///< of dx/(c + U), the paper's single step, and
@@ -91,8 +94,8 @@ Fluid::Implementation::Implementation(const Config& c,
 
 /// To be called whenever the fields were set from outside.
 void Fluid::Implementation::start() {
-    particles.laplacian.assign(config.fourth_order ? particles.size() : 0,
-                               Slope{}); // not yet known
+    particles.rate.assign(particles.size(), Slope{}); // not yet known
+    particles.laplacian.assign(config.fourth_order ? particles.size() : 0, Slope{});
     const auto differs = [&](const Fields& f) { return f.T != particles.fields[0].T; };
     heat_ = config.conductivity > 0
             && (boundary_.heated()
@@ -114,7 +117,6 @@ void Fluid::Implementation::set_fields(const std::function<Values(Vec2)>& field)
         const Values v = field(particles.position(a));
         particles.fields[a] = {v.velocity.x, v.velocity.y, v.pressure, v.temperature};
         particles.relaxing[a] = 0;
-        particles.rate[a] = {};
     }
     level();
     for (std::size_t a = 0; a < particles.size(); ++a) {
@@ -135,7 +137,12 @@ double Fluid::Implementation::stable_step() const {
         limit = std::min(limit, share * dx * dx / slowest);
     }
     if (fastest() > 0) {
-        limit = std::min(limit, courant_flow * dx / fastest());
+        const double U = fastest();
+        const double share =
+            U * dx <= smooth_reynolds * nu
+                ? std::clamp(smooth_way * U / sound_speed_, courant_flow, courant_smooth)
+                : courant_flow;
+        limit = std::min(limit, share * dx / U);
     }
     if (paper_) {
         return std::min(limit, courant_paper * dx / (sound_speed_ + fastest()));
@@ -381,15 +388,15 @@ void Fluid::Implementation::accelerate(double dt) {
     inner.hydrostatics = &hydrostatics_;
     inner.smoothing_length = evaluation_.kernel().smoothing_length();
     inner.given_force = given_force_;
-    const Given given = buoyant_ ? pressure_.run<true>(particles, evaluation_, inner)
-                                 : pressure_.run<false>(particles, evaluation_, inner);
+    const Booked booked = buoyant_ ? pressure_.run<true>(particles, evaluation_, inner)
+                                   : pressure_.run<false>(particles, evaluation_, inner);
     // With what the walls' shear puts in (book()) the viscous loss: what the viscous term takes
     // from the motion, -sum m v.(nu lap v). (2 mu D:D sampled at the particles misses a quarter of
     // it in layers a few spacings thin.)
     const double mass = config.density * volume;
-    totals_.impulse_from_body_force += mass * given.impulse;
-    totals_.body_force_work += mass * given.body_force_work;
-    totals_.viscous_loss -= mass * given.viscous_work;
+    totals_.impulse_from_body_force += mass * booked.impulse;
+    totals_.body_force_work += mass * booked.body_force_work;
+    totals_.viscous_loss -= mass * booked.viscous_work;
 }
 
 /// Advances T and corrects it for the shift, so that it gains what has passed.

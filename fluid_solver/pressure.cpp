@@ -110,7 +110,7 @@ void Pressure::compress(const Evaluation& evaluation,
 }
 
 template <bool Buoyancy>
-Given Pressure::run(Particles& particles, Evaluation& evaluation, const InnerSteps& inner) {
+Booked Pressure::run(Particles& particles, Evaluation& evaluation, const InnerSteps& inner) {
     const std::size_t n = particles.size();
     flow_.resize(n);
     drive_.resize(n);
@@ -174,22 +174,24 @@ Given Pressure::run(Particles& particles, Evaluation& evaluation, const InnerSte
         if constexpr (Buoyancy) {
             force += inner.hydrostatics->force(f.T + 0.5 * dt * evaluation.heating[a]);
         }
-        return Given{dt * force, dt * dot(force, mean), dt * dot(viscous, mean)};
+        return Booked{dt * force, dt * dot(force, mean), dt * dot(viscous, mean)};
     };
-    given_.assign(chunks_of(n), {});
+    booked_.resize(chunks_of(n));
     for_chunks(n, threads_, [&](std::size_t chunk, std::size_t first, std::size_t last) {
+        Booked part;
         for (std::size_t a = first; a < last; ++a) {
-            given_[chunk] += finish(a);
+            part += finish(a);
         }
+        booked_[chunk] = part;
     });
-    Given all;
-    for (const Given& part : given_) {
+    Booked all;
+    for (const Booked& part : booked_) {
         all += part;
     }
     return all;
 }
 
-template Given Pressure::run<false>(Particles&, Evaluation&, const InnerSteps&);
-template Given Pressure::run<true>(Particles&, Evaluation&, const InnerSteps&);
+template Booked Pressure::run<false>(Particles&, Evaluation&, const InnerSteps&);
+template Booked Pressure::run<true>(Particles&, Evaluation&, const InnerSteps&);
 
 } // namespace duet::fluid

@@ -25,11 +25,11 @@ struct InnerSteps {
 
 /// What body forces and the viscous term gave to the particles in a group of inner steps, for a
 /// mass of one each: impulses, m/s, and works by the mean of the velocities before and after.
-struct Given {
+struct Booked {
     Vec2 impulse;                                 ///< of buoyancy and given force
     double body_force_work = 0, viscous_work = 0; ///< m2/s2
 
-    Given& operator+=(const Given& o) {
+    Booked& operator+=(const Booked& o) {
         impulse += o.impulse;
         body_force_work += o.body_force_work;
         viscous_work += o.viscous_work;
@@ -45,7 +45,7 @@ class Pressure {
     /// in the evaluation's slopes. With Buoyancy the body force follows T + t dT/dt. Returns the
     /// sums over the particles.
     template <bool Buoyancy>
-    Given run(Particles& particles, Evaluation& evaluation, const InnerSteps& inner);
+    Booked run(Particles& particles, Evaluation& evaluation, const InnerSteps& inner);
 
   private:
     /// Velocity and gradient of p of one particle, gathered together.
@@ -80,7 +80,7 @@ class Pressure {
     std::vector<Flow> flow_;
     std::vector<Drive> drive_;
     std::vector<float> p_, next_p_;
-    std::vector<Given> given_;     ///< by chunk
+    std::vector<Booked> booked_;   ///< by chunk
     std::vector<float> curvature_; ///< sum V F (p_a - p_b)
 };
 

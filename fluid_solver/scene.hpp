@@ -95,10 +95,11 @@ struct Config {
     VectorFunction body_force;        ///< m/s2, beside the buoyancy
     std::vector<Wall> walls;
     PressureLevel pressure_level = PressureLevel::zero_mean;
-    double sound_speed = 0;    ///< m/s; 0 adapts it to the flow
-    unsigned seed = 1;         ///< of the initial disorder
-    double disorder = 0;       ///< initial random displacement, in spacings
-    bool fourth_order = false; ///< Laplacians away from walls without the kernel's error
+    double sound_speed = 0; ///< m/s; 0 adapts it to the flow
+    unsigned seed = 1;      ///< of the initial disorder
+    double disorder = 0;    ///< initial random displacement, in spacings
+    /// Laplacians away from walls without the kernel's error, diffusion of second order in time.
+    bool fourth_order = false;
     int threads = 1;
 };
 

@@ -55,6 +55,15 @@ TEST(FluidCavity, NusseltNumberAndVelocities) {
     EXPECT_LT(e.vmax, 0.015);
 }
 
+// (The Nusselt number's error changes its sign, and v_max is the rest of errors that cancel.)
+TEST(FluidCavity, LargestVelocityAcrossConverges) {
+    test::expect_order(
+        {1.0 / 20, 1.0 / 28, 1.0 / 40},
+        [](double h) { return errors(h, 0.3, false).umax; },
+        1.3,
+        0.008);
+}
+
 // Coarser than this the errors of the Nusselt number have another sign.
 TEST(FluidCavity, ConvergesWithTheLaplacianOfFourthOrder) {
     const std::vector<double> spacings{1.0 / 32, 1.0 / 45, 1.0 / 64};
