@@ -149,7 +149,7 @@ TEST(FluidPeriodicFlows, AHeatModeDecaysAtSecondOrder) {
 }
 
 // Neither the kernel's error nor that of the steps' first order is left: with the one correction
-// and not the other it is 60 times as large.
+// and not the other it is 60 to 400 times as large.
 TEST(FluidPeriodicFlows, AHeatModeOnALatticeAtFourthOrder) {
     expect_order(
         {1.0 / 16, 1.0 / 24, 1.0 / 36},
