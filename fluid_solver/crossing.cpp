@@ -80,7 +80,8 @@ void Fluid::Implementation::hold_off_walls(const HalfStep& half) {
     for (std::size_t i = 0; i < interface_before_.size(); ++i) {
         wall_way = std::max(wall_way, norm(interface_position_[i] - interface_before_[i]));
     }
-    // At the end of a step the evaluation in its middle knows what is within reach of walls.
+    // At the end of a step the evaluation in its middle knows what is within reach of walls. (What
+    // a diverging velocity throws farther than that, the next half step finds behind its wall.)
     const bool looked = half.with_shift && !paper_ && wall_way < config.spacing;
     held_.resize(chunks_of(particles.size()));
     for_chunks(

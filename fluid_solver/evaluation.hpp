@@ -23,7 +23,7 @@ struct WeightSum {
     float x, y;
 };
 
-/// What of the friction on a particle follows its velocity within the outer step, 1/s.
+/// What of the friction on u and on v of a particle follows them within the outer step, 1/s.
 struct Friction {
     double u = 0, v = 0;
 };
@@ -58,7 +58,7 @@ struct EvaluationInput {
     double shift_factor;       ///< m2: dr = -shift_factor gradC
     bool heat;                 ///< the temperature can change
     double step = 0;           ///< s, the outer one; with 0 no friction follows
-    bool fourth_order = false; ///< needs the particles' Laplacians of the step before
+    bool fourth_order = false; ///< needs the particles' rates and Laplacians of late
 };
 
 class Evaluation {

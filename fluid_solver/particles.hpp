@@ -114,8 +114,8 @@ class CellGrid {
 
 class Fluid;
 
-/// A rate of late: the mean of the one before and the one of this step. Sound that turns with each
-/// step is none, and predictions by it stay stable to 1.5 times the steps of AB2.
+/// A rate of late: the mean of the one before and the one of this step (docs/theory-fluid.md,
+/// "Rates of late").
 inline float recent(float before, double now) {
     return static_cast<float>(0.5 * (static_cast<double>(before) + now));
 }
@@ -126,7 +126,7 @@ class Particles {
     std::vector<double> x, y;
     std::vector<Fields> fields;
     std::vector<float> relaxing;         ///< P, Pa: what the pressure answered of late
-    std::vector<Slope> rate;             ///< of u, v and T of late, by the outer steps, 1/s
+    std::vector<Slope> rate;             ///< of u, v (m/s2) and T (K/s), of late
     std::vector<Slope> laplacian;        ///< of u, v, T in the step before, where it is asked for
     std::vector<std::uint32_t> identity; ///< constant through a run
     std::vector<std::uint16_t> compartment; ///< of the fluid's connected parts

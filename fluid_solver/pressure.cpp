@@ -129,7 +129,8 @@ Booked Pressure::run(Particles& particles, Evaluation& evaluation, const InnerSt
             rate = evaluation.heating[a] * inner.hydrostatics->per_kelvin();
         }
         if (const WallTerms* wall = evaluation.wall(a)) {
-            // k (v_start + a t - v), implicitly: what goes on as before is not slowed
+            // k (v_start + a t - v), a of late, t and v at each inner step's end: what goes on as
+            // before is not slowed. (The rate counts from the inner step's middle.)
             const Friction& k = wall->friction;
             const Slope& now = particles.rate[a];
             const Vec2 faster{k.u * static_cast<double>(now.u), k.v * static_cast<double>(now.v)};
@@ -144,7 +145,7 @@ Booked Pressure::run(Particles& particles, Evaluation& evaluation, const InnerSt
                             narrow(inner.step),
                             narrow(1 / (1 + inner.step * c / (relaxation * h)))};
     for (int s = 0; s < inner.count; ++s) {
-        const double time = (s + 0.5) * inner.step; // in the middle
+        const double time = (s + 0.5) * inner.step; // of its middle
         for_particles(n, threads_, [&](std::size_t a) {
             accelerate<Buoyancy>(particles, evaluation, inner, time, a);
         });

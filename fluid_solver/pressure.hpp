@@ -19,8 +19,7 @@ struct InnerSteps {
     double sound_speed = 0; ///< m/s
     const Hydrostatics* hydrostatics = nullptr;
     double smoothing_length = 0;
-    std::span<const Vec2>
-        given_force; ///< m/s2, by particle, beside the buoyancy; empty without one
+    std::span<const Vec2> given_force; ///< m/s2, by particle, buoyancy apart; or empty
 };
 
 /// What body forces and the viscous term gave to the particles in a group of inner steps, for a

@@ -13,7 +13,8 @@ inline double wall_push(double d1, double spacing) {
     return 0.2 * std::max(0.0, 0.3 * spacing - d1);
 }
 
-/// The factor of -gradC: min(3 h U dt, 2/3 dx^2). Beyond the cap the particles are thrown about.
+/// The factor of -gradC: min(3 h U dt, 2/3 dx^2). Beyond the cap the particles are thrown about;
+/// with less of it, the sums over a longer step lose more momentum.
 inline double shift_factor(double smoothing_length, double speed, double step, double spacing) {
     return std::min(3 * smoothing_length * speed * step, 2.0 / 3 * spacing * spacing);
 }

@@ -24,7 +24,9 @@ constexpr double bytes_per_node = 500;
 constexpr double bytes_of_a_process = 30e6;
 constexpr double diffusive_share = 0.18; // outer step: 0.18 spacing^2 / max(nu, alpha)
 constexpr double flow_share = 0.4;       // outer step: 0.4 spacing / speed
-constexpr double paper_share = 0.3 / 11; // 0.3 spacing / (sound of ten times the speed + speed)
+// The paper's formulation: 0.15 spacing^2 / max(nu, alpha), 0.3 spacing / (sound + speed), and the
+// sound is ten times as fast as the flow.
+constexpr double paper_diffusive_share = 0.15, paper_flow_share = 0.3 / 11;
 
 std::string number(double value) {
     char text[32];
@@ -182,10 +184,10 @@ Estimate estimate(const v1::Scene& scene) {
         out.heat ? diffusivity(fluid.conductivity(), fluid.density(), fluid.heat_capacity()) : 0);
     const double dx = fluid.spacing(), none = std::numeric_limits<double>::infinity();
     const bool paper = fluid.formulation() == v1::Fluid::PAPER; // which steps with the sound
-    out.fluid_step =
-        std::min({scene.time().end(),
-                  slowest > 0 ? (paper ? 0.15 : diffusive_share) * dx * dx / slowest : none,
-                  out.speed > 0 ? (paper ? paper_share : flow_share) * dx / out.speed : none});
+    out.fluid_step = std::min(
+        {scene.time().end(),
+         slowest > 0 ? (paper ? paper_diffusive_share : diffusive_share) * dx * dx / slowest : none,
+         out.speed > 0 ? (paper ? paper_flow_share : flow_share) * dx / out.speed : none});
     out.window = scene.time().window() > 0 ? scene.time().window() : out.fluid_step;
     return out;
 }

@@ -110,6 +110,8 @@ class Plots(unittest.TestCase):
             result = run("plot_sweep.py", *options)
             self.assertEqual(result.returncode, 0, result.stderr)
         self.assertGreater(matplotlib.image.imread(both).shape[1], matplotlib.image.imread(one).shape[1])
+        self.assertFalse(numpy.array_equal(matplotlib.image.imread(both),
+                                           matplotlib.image.imread(self.folder / "beside.png")))
         self.assertIn("there is no check lift; there is nu; mean, v",
                       self.sentence("plot_sweep.py", table, "--check", "lift"))
         self.assertIn("is no table of duet sweep",

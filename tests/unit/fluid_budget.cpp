@@ -311,6 +311,7 @@ TEST(FluidBudget, WhatTheFlowLosesIsWhatViscosityTakes) {
     EXPECT_LT(fine.rate_error, 0.1 * coarse.rate_error);
     EXPECT_LT(coarse.unexplained, 0.003); // measured 0.0025 and 0.00055
     EXPECT_LT(fine.unexplained, 0.0007);
+    EXPECT_LT(fine.unexplained, 0.25 * coarse.unexplained);
 }
 
 TEST(FluidBudget, WhatALidPutsInIsWhatViscosityTakes) {
