@@ -24,15 +24,25 @@ void Fluid::Implementation::close_momentum() {
     totals_.closure_momentum_abs += norm(missing);
 }
 
+WallMaterial Fluid::Implementation::wall_material() const {
+    return {config.conductivity, config.kinematic_viscosity, config.density, config.heat_capacity};
+}
+
+/// Estimates the slopes at the walls, and with them corrects what the operators make of the rows of
+/// particles next to these.
+void Fluid::Implementation::estimate_slopes() {
+    const WallMaterial material = wall_material();
+    wall_estimate_.slopes(boundary_, evaluation_, particles, material);
+    evaluation_.correct_samples(wall_estimate_.bends(),
+                                wall_estimate_.quartics(),
+                                material.conductivity / (material.density * material.heat_capacity),
+                                smoothness());
+}
+
 /// Books what passes through each wall cell in this step.
 void Fluid::Implementation::book(double dt) {
-    wall_estimate_.run(
-        boundary_,
-        evaluation_,
-        particles,
-        hydrostatics_,
-        {config.conductivity, config.kinematic_viscosity, config.density, config.heat_capacity},
-        given_force_);
+    wall_estimate_.tractions(
+        boundary_, evaluation_, particles, hydrostatics_, wall_material(), given_force_);
     passed_heat_.assign(compartments, 0);
     for (std::size_t c = 0; c < boundary_.cells().size(); ++c) {
         const double length = boundary_.cells()[c].length;

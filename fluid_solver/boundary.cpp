@@ -169,6 +169,9 @@ void Boundary::add_cells(std::uint32_t segment, const Face& face) {
     s.first_cell = static_cast<std::uint32_t>(cells_.size());
     s.cells = static_cast<std::uint32_t>(
         std::max(1.0, std::ceil(s.length / (0.5 * spacing_) * (1 - 1e-9))));
+    const Wall* wall = s.wall == none ? nullptr : &walls_[s.wall];
+    const bool one_temperature =
+        wall != nullptr && wall->temperature && wall->temperature->is_number();
     for (std::uint32_t c = 0; c < s.cells; ++c) {
         const auto index = static_cast<std::uint32_t>(cells_.size());
         const bool starts_face = segment == face.first && c == 0;
@@ -181,6 +184,7 @@ void Boundary::add_cells(std::uint32_t segment, const Face& face) {
                           face.normal,
                           face.heated,
                           face.slip,
+                          one_temperature,
                           starts_face ? none : index - 1,
                           none,
                           0});

@@ -57,6 +57,7 @@ struct WallCell {
     double length = 0;
     Vec2 normal; ///< from the fluid into the wall
     bool heated = false, slip = false;
+    bool one_temperature = false;              ///< of a wall, the same everywhere and at all times
     std::uint32_t before = none, after = none; ///< neighbours, unless a corner lies between
     double curvature = 0; ///< div n, 1/m: positive where the fluid lies inside the bend
 };

@@ -80,9 +80,12 @@ void Fluid::Implementation::hold_off_walls(const HalfStep& half) {
     for (std::size_t i = 0; i < interface_before_.size(); ++i) {
         wall_way = std::max(wall_way, norm(interface_position_[i] - interface_before_[i]));
     }
-    // At the end of a step the evaluation in its middle knows what is within reach of walls. (What
-    // a diverging velocity throws farther than that, the next half step finds behind its wall.)
-    const bool looked = half.with_shift && !paper_ && wall_way < config.spacing;
+    // Before and after it the evaluation in the middle of a step knows what is within reach of
+    // walls. (What a diverging velocity throws farther than that, the next half step finds behind
+    // its wall.)
+    const bool looked =
+        evaluated_ && std::max(wall_way, wall_way_) < (half.with_shift ? 1 : 0.5) * config.spacing;
+    wall_way_ = wall_way;
     held_.resize(chunks_of(particles.size()));
     for_chunks(
         particles.size(), config.threads, [&](std::size_t c, std::size_t first, std::size_t last) {

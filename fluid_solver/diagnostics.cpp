@@ -130,12 +130,13 @@ Values Fluid::Implementation::at(Vec2 point) const {
     Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
     Eigen::Matrix<double, 6, 4> right = Eigen::Matrix<double, 6, 4>::Zero();
     int points = 0;
-    // The particles have moved by less than a cell since they were sorted: search two cells about.
-    grid_.for_cells_about(point, 2, [&](std::size_t cell) {
+    // Since they were sorted the particles have moved by half a step and the shift: less than half
+    // a spacing.
+    grid_.for_cells_within(point, R + 0.5 * config.spacing, [&](std::size_t cell) {
         for (std::uint32_t a = particles.cell_start()[cell]; a < particles.cell_start()[cell + 1];
              ++a) {
             const Vec2 r = grid_.shortest(particles.position(a) - point);
-            if (norm(r) < R && !Ghosts::hidden(contacts, r)) {
+            if (dot(r, r) < R * R && !Ghosts::hidden(contacts, r)) {
                 const Fields& f = particles.fields[a];
                 const double head =
                     hydrostatics_.pressure(particles.position(a), particles.compartment[a]);

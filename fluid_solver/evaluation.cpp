@@ -194,6 +194,40 @@ double lattice_error(const Kernel& kernel, double spacing) {
     return fourth / (12 * second);
 }
 
+/// `Work::quartic`.
+std::array<float, 5> quartic_moments(const Contact& wall,
+                                     const Neighbours& near,
+                                     std::span<const PairBlock> pairs,
+                                     const DirectionWeights& d) {
+    const auto nx = static_cast<float>(wall.normal.x), ny = static_cast<float>(wall.normal.y);
+    const auto four_d = static_cast<float>(4 * wall.distance);
+    Eight xx{}, xy{}, yy{}, x{}, y{};
+    for (std::size_t block = 0; block < pairs.size(); ++block) {
+        const std::size_t k = block * eight;
+        const Eight z = -nx * load_eight(&near.x[k]) - ny * load_eight(&near.y[k]);
+        const Eight f = z * z * z * (z - four_d);
+        xx += f * load_eight(&d.xx[k]);
+        xy += f * load_eight(&d.xy[k]);
+        yy += f * load_eight(&d.yy[k]);
+        x += f * load_eight(pairs[block].x);
+        y += f * load_eight(pairs[block].y);
+    }
+    alignas(32) float sums[eight];
+    store(sums, lane_sums(xx, xy, yy, x, y, Eight{}, Eight{}, Eight{}));
+    return {sums[0], sums[1], sums[2], sums[3], sums[4]};
+}
+
+/// What div v makes, m times u_n,nn, of a velocity that is bent beside a wall with the normal n:
+/// the gradients err by A_ijk H_jk / 2, and by continuity u_t,nt = -u_n,nn.
+double bend_error(const Third& Au, const Third& Av, Vec2 n) {
+    const Vec2 t{-n.y, n.x};
+    const auto contract = [](const Symmetric& a, Vec2 p, Vec2 q) {
+        return a[0] * p.x * q.x + a[1] * (p.x * q.y + p.y * q.x) + a[2] * p.y * q.y;
+    };
+    return 0.5 * (n.x * contract(Au[0], n, n) + n.y * contract(Av[1], n, n))
+           - (t.x * contract(Au[0], n, t) + t.y * contract(Av[1], n, t));
+}
+
 Correction narrow(const Mat2& m) {
     return {static_cast<float>(m.xx),
             static_cast<float>(m.xy),
@@ -208,6 +242,9 @@ struct Evaluation::Work {
     DirectionWeights directions;
     std::vector<Contact> contacts;
     WallSums walls;
+    /// sum 2 V F e e f (xx, xy, yy) and sum w f of f = z^4 - 4 d z^3, z from the particle towards
+    /// its only wall, at d: what of q (d - z)^4 is more than quadratic.
+    std::array<float, 5> quartic;
     Mat2 pressure;                             ///< near walls: L of the pressure
     std::size_t u = 0, v = 0, temperature = 0; ///< places in the batch of operators
 };
@@ -292,6 +329,13 @@ bool Evaluation::gather(
     // beside two faces their sums differ from the pressure's.
     const WallSums& w = work.walls;
     ghosts_.sums(scene.boundary, work.contacts, work.walls);
+    if (scene.input.fourth_order && work.contacts.size() == 1 && w.temperature.K != 0) {
+        work.quartic = quartic_moments(
+            work.contacts[0],
+            s.near,
+            {&pairs_[a / chunk_size * chunk_blocks_ + first_block_[a]], s.near.eights()},
+            work.directions);
+    }
     work.pressure = correction(m, w.N_n);
     s.operators.add(m, w.u.S_xi + w.u_slips.N_n, w.u.S_xi_xi + w.u_slips.N_d_n_n, w.u);
     if (w.slips) {
@@ -420,14 +464,37 @@ void Evaluation::beside_walls(std::size_t a,
                             scene.input.spacing);
 }
 
+/// What D makes of d^4 beside the wall beyond its Laplacian, 12 d^2: all of it in the first row,
+/// less in the second, since in layers of a few spacings T departs from d^4 there.
+double Evaluation::quartic_error(const Scene& scene, const Scratch& s, const Work& work) const {
+    const DirichletSums& w = work.walls.temperature;
+    if (!scene.input.fourth_order || work.contacts.size() != 1 || w.K == 0) {
+        return 0;
+    }
+    const double d = work.contacts[0].distance, at_wall = -3 * d * d * d * d;
+    const auto B = s.operators.B(work.temperature);
+    const auto E = s.operators.E(work.temperature);
+    const auto& f = work.quartic;
+    const Vec2 gradient =
+        s.operators.L(work.temperature) * Vec2{f[3] + w.S.x * at_wall, f[4] + w.S.y * at_wall};
+    const double pairs = B[0] * f[0] + B[1] * f[1] + B[2] * f[2];
+    const double share = std::min(1.0, 2 * sample_weight(d));
+    return share * (-pairs - w.K * at_wall - E[0] * gradient.x - E[1] * gradient.y);
+}
+
 void Evaluation::take_samples(std::size_t a,
                               const Scene& scene,
-                              const std::vector<Contact>& contacts,
+                              const Scratch& s,
+                              const Work& work,
                               std::vector<WallSample>& out) const {
-    for (const Contact& contact : contacts) {
+    std::size_t nearest = none;
+    for (const Contact& contact : work.contacts) {
         if (contact.distance < sample_depth_ && contact.on_wall()) {
             const WallPoint point = scene.boundary.at(*contact.face, contact.foot);
             const std::uint32_t cell = scene.boundary.cell_at(*point.segment, point.along);
+            if (nearest == none || contact.distance < out[nearest].distance) {
+                nearest = out.size();
+            }
             out.push_back(
                 {static_cast<std::uint32_t>(a),
                  cell,
@@ -437,6 +504,11 @@ void Evaluation::take_samples(std::size_t a,
                  load(scene.fields[a]),
                  dot(point.acceleration, contact.normal)});
         }
+    }
+    if (nearest != none) {
+        const Vec2 n = scene.boundary.cells()[out[nearest].cell].normal;
+        out[nearest].bend_error = bend_error(s.operators.A(work.u), s.operators.A(work.v), n);
+        out[nearest].quartic_error = quartic_error(scene, s, work);
     }
 }
 
@@ -466,11 +538,24 @@ bool Evaluation::run_chunk(std::size_t chunk,
                 interior(a, particles.laplacian, scene, s, work);
             } else {
                 beside_walls(a, scene, s, work);
-                take_samples(a, scene, work.contacts, samples[chunk]);
+                take_samples(a, scene, s, work, samples[chunk]);
             }
         }
     }
     return true;
+}
+
+void Evaluation::correct_samples(std::span<const double> bends,
+                                 std::span<const double> quartics,
+                                 double diffusivity,
+                                 double smooth) {
+    for_chunks(count.size(), threads_, [&](std::size_t chunk, std::size_t, std::size_t) {
+        for (const WallSample& sample : samples[chunk]) {
+            const std::size_t a = sample.particle;
+            wall_[chunk][wall_slot_[a]].value -= smooth * sample.bend_error * bends[sample.cell];
+            heating[a] -= diffusivity * sample.quartic_error * quartics[sample.cell];
+        }
+    });
 }
 
 /// The fields `ahead` seconds on, by their rates of late. Diffusion that a step takes from its

@@ -48,6 +48,11 @@ struct WallSample {
     Lanes wall;          ///< u, v, 0, T of the wall at the foot point
     Lanes fields;        ///< of the particle when it was evaluated: what diffusion was given
     double acceleration; ///< of the wall along its normal
+    // What profiles that are typical beside a wall make of the operators; 0 but at the wall
+    // nearest.
+    double bend_error = 0; ///< m: of div v, for each 1/(m s) of u_n,nn
+    double quartic_error =
+        0; ///< m2: of lap T over the step, for each K/m4 of q in T_w - g d + q d^4
 };
 
 /// Parameters of the pass.
@@ -103,9 +108,16 @@ class Evaluation {
             terms.L_N_acceleration -= terms.L_N_n * b;
         }
     }
+    /// The weight of a sample at the distance d of the wall.
+    double sample_weight(double d) const { return 1 - d / sample_depth_; }
+    /// Takes the errors of the samples out of div v, the share `smooth` of them, and out of dT/dt:
+    /// `bends` are u_n,nn, 1/(m s), and `quartics` q, K/m4, by wall cell.
+    void correct_samples(std::span<const double> bends,
+                         std::span<const double> quartics,
+                         double diffusivity,
+                         double smooth);
     const Kernel& kernel() const { return kernel_; }
     const Ghosts& ghosts() const { return ghosts_; }
-    double sample_depth() const { return sample_depth_; }
 
   private:
     struct Work;
@@ -130,8 +142,10 @@ class Evaluation {
     void store_diffusion(std::size_t a, const EvaluationInput& input, const Four& laplacian);
     void take_samples(std::size_t a,
                       const Scene& scene,
-                      const std::vector<Contact>& contacts,
+                      const Scratch& s,
+                      const Work& work,
                       std::vector<WallSample>& out) const;
+    double quartic_error(const Scene& scene, const Scratch& s, const Work& work) const;
     /// Returns false if particles have more neighbours than there is room for.
     template <bool Heat>
     bool run_chunk(std::size_t chunk,

@@ -10,15 +10,17 @@ namespace duet::fluid {
 
 namespace {
 
-constexpr double courant_flow = 0.3;        ///< of dx/U, outer step, and up to
-constexpr double courant_smooth = 0.4;      ///< where friction keeps the flow smooth: dx U/nu is
-constexpr double smooth_reynolds = 20;      ///< no more than this, and the sound goes no farther
-constexpr double smooth_way = 5;            ///< than so many spacings on one geometry
-constexpr double courant_diffusion = 0.18;  ///< of dx^2/max(nu, alpha), outer step
-constexpr double courant_sound = 1.65;      ///< of dx/c, inner step (stable to 2.0)
-constexpr double courant_paper = 0.3;       ///< of dx/(c + U), the paper's single step, and
-constexpr double paper_diffusion = 0.15;    ///< of dx^2/max(nu, alpha)
-constexpr double step_tolerance = 1.05;     ///< over the outer limit rather than twice the steps
+constexpr double courant_flow = 0.3;       ///< of dx/U, outer step, and up to
+constexpr double courant_smooth = 0.4;     ///< where friction keeps the flow smooth: dx U/nu is
+constexpr double smooth_reynolds = 20;     ///< no more than this, and the sound goes no farther
+constexpr double smooth_way = 5;           ///< than so many spacings on one geometry
+constexpr double fine_reynolds = 6;        ///< dx U/nu up to which particles' slopes are the flow's
+constexpr double rough_reynolds = 12;      ///< and from which on they tell nothing of it
+constexpr double courant_diffusion = 0.18; ///< of dx^2/max(nu, alpha), outer step
+constexpr double courant_sound = 1.65;     ///< of dx/c, inner step (stable to 2.0)
+constexpr double courant_paper = 0.3;      ///< of dx/(c + U), the paper's single step, and
+constexpr double paper_diffusion = 0.15;   ///< of dx^2/max(nu, alpha)
+constexpr double step_tolerance = 1.05;    ///< over the outer limit rather than twice the steps
 constexpr double follow_acceleration = 0.1; ///< share of a window's acceleration taken up at once
 
 /// The configuration itself, if it can be modelled.
@@ -94,6 +96,7 @@ Fluid::Implementation::Implementation(const Config& c,
 
 /// To be called whenever the fields were set from outside.
 void Fluid::Implementation::start() {
+    evaluated_ = false;
     particles.rate.assign(particles.size(), Slope{}); // not yet known
     particles.laplacian.assign(config.fourth_order ? particles.size() : 0, Slope{});
     const auto differs = [&](const Fields& f) { return f.T != particles.fields[0].T; };
@@ -124,6 +127,16 @@ void Fluid::Implementation::set_fields(const std::function<Values(Vec2)>& field)
             hydrostatics_.pressure(particles.position(a), particles.compartment[a]);
     }
     start();
+}
+
+/// How far friction keeps the flow smooth from spacing to spacing. Where it does not, what the
+/// slopes of single particles tell of the flow about them disturbs it more than it mends.
+double Fluid::Implementation::smoothness() const {
+    if (!(config.kinematic_viscosity > 0)) {
+        return 0;
+    }
+    const double reynolds = config.spacing * fastest() / config.kinematic_viscosity;
+    return std::clamp((rough_reynolds - reynolds) / (rough_reynolds - fine_reynolds), 0.0, 1.0);
 }
 
 double Fluid::Implementation::stable_step() const {
@@ -202,6 +215,7 @@ void Fluid::Implementation::step(double dt, double elapsed, const Motion& motion
     {
         const Stamp stamp(phase_seconds_[evaluating]);
         evaluate(dt);
+        estimate_slopes();
         take_body_force(time + elapsed + 0.5 * dt);
         for (std::size_t a = 0; a < given_force_.size(); ++a) {
             evaluation_.add_force(a, given_force_[a]);
@@ -243,6 +257,7 @@ void Fluid::Implementation::conduct(double dt, double elapsed, const Motion& mot
         {
             const Stamp stamp(phase_seconds_[evaluating]);
             evaluate(dt);
+            estimate_slopes();
             std::fill(evaluation_.shift.begin(), evaluation_.shift.end(), Vec2{});
         }
         const Stamp stamp(phase_seconds_[walls_and_closure]);
@@ -325,11 +340,6 @@ void Fluid::Implementation::put_interface() {
     boundary_.set_values(interface_velocity_, interface_acceleration_, interface_temperature_);
 }
 
-Vec2 Fluid::Implementation::way(std::size_t a, double dt, bool with_shift) const {
-    const Vec2 flow{particles.fields[a].u, particles.fields[a].v};
-    return dt * flow + (with_shift ? evaluation_.shift[a] : Vec2{});
-}
-
 void Fluid::Implementation::move(double dt, bool with_shift) {
     for_particles(particles.size(), config.threads, [&](std::size_t a) {
         const Vec2 gone = way(a, dt, with_shift);
@@ -368,6 +378,7 @@ void Fluid::Implementation::evaluate(double dt) {
                      heat_,
                      dt,
                      config.fourth_order});
+    evaluated_ = true;
 }
 
 /// Serial: a formula of the scene is evaluated by one thread at a time.
@@ -385,6 +396,7 @@ void Fluid::Implementation::accelerate(double dt) {
     inner.step = dt / inner.count;
     inner.density = config.density;
     inner.sound_speed = sound_speed_;
+    inner.smoothness = smoothness();
     inner.hydrostatics = &hydrostatics_;
     inner.smoothing_length = evaluation_.kernel().smoothing_length();
     inner.given_force = given_force_;

@@ -43,6 +43,7 @@ class Fluid::Implementation {
     void set_fields(const std::function<Values(Vec2)>& field);
     int advance(double window, const InterfaceState& start, const InterfaceState& end);
     double stable_step() const;
+    double smoothness() const;
     Ledger ledger() const;
     void mark();
     std::vector<std::string> model() const;
@@ -86,7 +87,10 @@ class Fluid::Implementation {
     void follow_interface(const Motion& motion);
     void place_interface(double elapsed, const Motion& motion);
     void put_interface();
-    Vec2 way(std::size_t a, double dt, bool with_shift) const;
+    Vec2 way(std::size_t a, double dt, bool with_shift) const {
+        const Vec2 flow{particles.fields[a].u, particles.fields[a].v};
+        return dt * flow + (with_shift ? evaluation_.shift[a] : Vec2{});
+    }
     void move(double dt, bool with_shift);
     void wrap();
     void put(std::size_t a, Vec2 place);
@@ -132,6 +136,8 @@ class Fluid::Implementation {
     // booking.cpp
     Vec2 momentum() const;
     void close_momentum();
+    WallMaterial wall_material() const;
+    void estimate_slopes();
     void book(double dt);
     Vec2 wall_velocity(std::size_t cell) const;
     void pass(std::uint32_t cell, double heat, Vec2 impulse);
@@ -200,6 +206,8 @@ class Fluid::Implementation {
     Mark mark_;
     Ledger totals_;          ///< what accumulates: exchanges, closure, wall hits
     std::vector<Held> held_; ///< by chunk
+    bool evaluated_ = false; ///< the evaluation is of the particles in their present order
+    double wall_way_ = 0;    ///< m, of the interface in the half step before
     /// Of the particles of a chunk.
     struct Extremes {
         double speed2 = 0, lowest = 1e300, highest = -1e300;

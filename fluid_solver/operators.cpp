@@ -181,6 +181,12 @@ void OperatorBatch::solve() {
         L_[1][i] = Lxy;
         L_[2][i] = Lyx;
         L_[3][i] = Lyy;
+        A_[0][i] = Ax0;
+        A_[1][i] = Ax1;
+        A_[2][i] = Ax2;
+        A_[3][i] = Ay0;
+        A_[4][i] = Ay1;
+        A_[5][i] = Ay2;
         theta_[i] = theta;
     }
 }

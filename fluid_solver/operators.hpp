@@ -66,6 +66,11 @@ class OperatorBatch {
     Mat2 L(std::size_t i) const { return {L_[0][i], L_[1][i], L_[2][i], L_[3][i]}; }
     std::array<float, 3> B(std::size_t i) const { return {B_[0][i], B_[1][i], B_[2][i]}; }
     std::array<float, 2> E(std::size_t i) const { return {E_[0][i], E_[1][i]}; }
+    /// A_ijk = L_il [sum V F x_l x_j x_k + walls]: the corrected gradient's error is A_ijk H_jk
+    /// / 2.
+    Third A(std::size_t i) const {
+        return {Symmetric{A_[0][i], A_[1][i], A_[2][i]}, Symmetric{A_[3][i], A_[4][i], A_[5][i]}};
+    }
     /// Whether B was pulled back towards the unit tensor.
     bool limited(std::size_t i) const { return theta_[i] < 1; }
 
@@ -80,6 +85,7 @@ class OperatorBatch {
     alignas(32) std::array<Column, 6> third_{};
     alignas(32) std::array<Column, 5> K_{}; ///< K xi_x, K xi_y, K xi xi
     alignas(32) std::array<Column, 4> L_{};
+    alignas(32) std::array<Column, 6> A_{}; ///< by i and jk
     alignas(32) std::array<Column, 3> B_{};
     alignas(32) std::array<Column, 2> E_{};
     alignas(32) Column theta_{};

@@ -70,11 +70,12 @@ class CellGrid {
         const int r = over_seam(row, rows_ - 2, period_.y, shift.y);
         return {index(c, r), shift};
     }
-    /// Calls visit(cell) once for each cell at most `reach` cells away, row by row.
+    /// Calls visit(cell) once for each cell that may hold a particle nearer than `reach` m, at most
+    /// two cells, row by row.
     template <class Visit>
-    void for_cells_about(Vec2 x, int reach, const Visit& visit) const {
-        const auto [low, high] = about(row(x.y), reach, rows_, period_.y);
-        const auto [from, to] = about(column(x.x), reach, columns_, period_.x);
+    void for_cells_within(Vec2 x, double reach, const Visit& visit) const {
+        const auto [low, high] = within(x.y - origin_.y, reach, inverse_.y, rows_, period_.y);
+        const auto [from, to] = within(x.x - origin_.x, reach, inverse_.x, columns_, period_.x);
         for (int r = low; r <= high; ++r) {
             for (int c = from; c <= to; ++c) {
                 visit(image(c, r).cell);
@@ -99,12 +100,15 @@ class CellGrid {
         }
         return i;
     }
-    /// The first and the last cell of those about i in one direction, all of them once.
-    static std::pair<int, int> about(int i, int reach, int count, double period) {
+    /// The first and the last cell in one direction, each of them once.
+    static std::pair<int, int>
+    within(double place, double reach, double inverse, int count, double period) {
         if (period > 0) {
-            return {i - reach, i - reach + std::min(2 * reach + 1, count - 2) - 1};
+            const int first = static_cast<int>(std::floor((place - reach) * inverse));
+            const int last = static_cast<int>(std::floor((place + reach) * inverse));
+            return {first, std::min(last, first + count - 3)};
         }
-        return {std::max(0, i - reach), std::min(count - 1, i + reach)};
+        return {clamp((place - reach) * inverse, count), clamp((place + reach) * inverse, count)};
     }
 
     Vec2 lower_, period_, origin_;

@@ -19,6 +19,7 @@ struct InnerSteps {
     double sound_speed = 0; ///< m/s
     const Hydrostatics* hydrostatics = nullptr;
     double smoothing_length = 0;
+    double smoothness = 1;             ///< of the flow: the share of its turning that counts
     std::span<const Vec2> given_force; ///< m/s2, by particle, buoyancy apart; or empty
 };
 
@@ -62,6 +63,7 @@ class Pressure {
         float diffusion; ///< delta h c, m2/s
         float step;      ///< s
         float kept;      ///< what a step leaves of P, 1/(1 + dt/tau)
+        float ahead = 0; ///< s, of the new velocities before the places: t - t_mid
     };
 
     template <bool Buoyancy>
@@ -80,6 +82,7 @@ class Pressure {
     std::vector<Drive> drive_;
     std::vector<float> p_, next_p_;
     std::vector<Booked> booked_;   ///< by chunk
+    std::vector<float> turning_;   ///< -2 det grad v, 1/s2
     std::vector<float> curvature_; ///< sum V F (p_a - p_b)
 };
 

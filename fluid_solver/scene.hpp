@@ -98,7 +98,8 @@ struct Config {
     double sound_speed = 0; ///< m/s; 0 adapts it to the flow
     unsigned seed = 1;      ///< of the initial disorder
     double disorder = 0;    ///< initial random displacement, in spacings
-    /// Laplacians away from walls without the kernel's error, diffusion of second order in time.
+    /// Laplacians away from walls, and those of T beside walls of one temperature, without the
+    /// kernel's error; diffusion of second order in time.
     bool fourth_order = false;
     int threads = 1;
 };

@@ -129,6 +129,7 @@ void Fluid::Implementation::restore(const std::string& state) {
     reader.end();
     boundary_.set_walls(time);
     put_interface();
+    evaluated_ = false;
 }
 
 } // namespace duet::fluid

@@ -20,10 +20,11 @@ if(TARGET duet AND TARGET duet-solid AND TARGET duet-fluid)
     duet_case(released_cylinder released_cylinder)
     duet_case(released_rigid_cylinder released_cylinder --set "solid.body[0].motion=\"rigid\"")
     # A disc as light as the fluid, soft, both sides at once: the exchange feeds its vibrations to 4e-4 J/m if it is let.
+    # (7.8, 7.8 and 7.9e-9 J/m at spacings of 0.0125, 0.01 and 0.0067 m.)
     duet_case(light_cylinder released_cylinder --set fluid.spacing=0.02 --set solid.body[0].element_size=0.02
         --set time.end=0.2 --set time.window=0 --set solid.body[0].density=1 --set solid.body[0].youngs_modulus=1e3
         --set coupling.schedule=parallel
-        --set "check=[{ quantity = 'solid.kinetic_energy', value = 7.5e-9, norm = 'relative', tolerance = 0.05 }]")
+        --set "check=[{ quantity = 'solid.kinetic_energy', value = 7.85e-9, norm = 'relative', tolerance = 0.05 }]")
     duet_case(ring_torque ring_torque)
     duet_case(torsional_ring torsional_ring)
     duet_case(insulated_beam flexible_beam/adiabatic.toml --set fluid.spacing=0.2 --set time.end=3)

@@ -339,21 +339,27 @@ void expect_inner_step_of_twin(const Config& config) {
                         3e-7 / inner_step);
         moved.see(norm(velocity[a] - Vec2{stepped[a].u, stepped[a].v}), 3e-7);
     }
-    for (std::size_t a = 0; a < n; ++a) {
+    const auto slopes = [&](std::size_t a, const auto& u, const auto& v) {
         const WallSums& w = sums[a];
-        const Vec2 du = derivatives(room, a, walls_of(w, w.u, w.u_slips, 0), [&](std::size_t b) {
-                            return velocity[b].x;
-                        }).gradient;
-        const Vec2 dv = derivatives(room, a, walls_of(w, w.v, w.v_slips, 1), [&](std::size_t b) {
-                            return velocity[b].y;
-                        }).gradient;
+        return std::pair{derivatives(room, a, walls_of(w, w.u, w.u_slips, 0), u).gradient,
+                         derivatives(room, a, walls_of(w, w.v, w.v_slips, 1), v).gradient};
+    };
+    for (std::size_t a = 0; a < n; ++a) {
+        const auto [du, dv] = slopes(
+            a,
+            [&](std::size_t b) { return velocity[b].x; },
+            [&](std::size_t b) { return velocity[b].y; });
+        const auto [du_old, dv_old] = slopes(
+            a, [&](std::size_t b) { return old[b].u; }, [&](std::size_t b) { return old[b].v; });
+        // The new velocities are half a step ahead of the places.
+        const double turned = inner_step * (du_old.x * dv_old.y - du_old.y * dv_old.x);
         double psi = 0;
         over_pairs(room, a, [&](std::size_t b, Vec2 x, double VF) {
             psi += 2 * VF * (old[a].p - old[b].p - 0.5 * dot(slope[a] + slope[b], x));
         });
         const WallTerms* wall = room.evaluation.wall(a);
         const double softness = wall ? wall->softness : 1;
-        const double answer = -density * sound * sound * softness * (du.x + dv.y)
+        const double answer = -density * sound * sound * softness * (du.x + dv.y + turned)
                               + 0.1 * inner.smoothing_length * sound * psi;
         const double decay = inner_step * sound / (6 * inner.smoothing_length);
         const double relaxing = (old_relaxing[a] + inner_step * answer) / (1 + decay);

@@ -16,19 +16,28 @@ namespace {
 
 constexpr double Ra = 1e5;
 
-/// Relative errors of the Nusselt number of the walls and of the largest velocities through the
-/// middle, means from t = 0.1 to `end` L^2/alpha.
-struct Errors {
+/// Nusselt number of the walls and largest velocities through the middle.
+struct Means {
     double nusselt = 0, umax = 0, vmax = 0;
 };
 
-Errors errors(double spacing, double end, bool fourth_order) {
+/// Their means from t = 0.1 to `end` L^2/alpha: the flow still swings about its steady state
+/// (4.52164, 34.7407, 68.6354) by up to some percent (cases/heated_cavity/reference/transient.py,
+/// 64, 96 and 128 cells across, extrapolated).
+const std::map<double, Means> reference{
+    {0.13, {4.51716, 34.9326, 68.6945}},
+    {0.2, {4.51981, 34.8201, 68.6606}},
+    {0.3, {4.52072, 34.7807, 68.6480}},
+};
+
+/// Relative errors of these.
+Means errors(double spacing, double end, bool fourth_order) {
     Config config = heated_cavity(Ra, spacing);
     config.fourth_order = fourth_order;
     Fluid fluid(config);
     fluid.advance(0.1);
     const int samples = static_cast<int>(std::lround((end - 0.1) / 0.002));
-    Errors mean;
+    Means mean;
     for (int k = 0; k < samples; ++k) {
         fluid.advance(0.002);
         mean.nusselt += (fluid.walls()[0].heat_flow - fluid.walls()[1].heat_flow) / (2 * samples);
@@ -43,16 +52,17 @@ Errors errors(double spacing, double end, bool fourth_order) {
     const Ledger l = fluid.ledger();
     EXPECT_NEAR(l.heat, l.heat_from_walls, 1e-11);
     EXPECT_EQ(l.wall_hits, 0u);
-    return {std::abs(mean.nusselt / 4.5216 - 1),
-            std::abs(mean.umax / 34.741 - 1),
-            std::abs(mean.vmax / 68.639 - 1)};
+    const Means& exact = reference.at(end);
+    return {std::abs(mean.nusselt / exact.nusselt - 1),
+            std::abs(mean.umax / exact.umax - 1),
+            std::abs(mean.vmax / exact.vmax - 1)};
 }
 
 TEST(FluidCavity, NusseltNumberAndVelocities) {
-    const Errors e = errors(1.0 / 40, 0.3, false);
-    EXPECT_LT(e.nusselt, 0.005); // measured 0.43, 0.65 and 1.1 %
-    EXPECT_LT(e.umax, 0.01);
-    EXPECT_LT(e.vmax, 0.015);
+    const Means e = errors(1.0 / 40, 0.3, false);
+    EXPECT_LT(e.nusselt, 0.0025); // measured 0.14, 0.54 and 0.47 %
+    EXPECT_LT(e.umax, 0.008);
+    EXPECT_LT(e.vmax, 0.007);
 }
 
 // The Nusselt number's error changes its sign here, so that it is small without an order.
@@ -65,23 +75,44 @@ TEST(FluidCavity, NusseltNumberOfFewParticles) {
 // (v_max is the rest of errors that cancel.)
 TEST(FluidCavity, LargestVelocityAcrossConverges) {
     test::expect_order(
-        {1.0 / 20, 1.0 / 28, 1.0 / 40},
-        [](double h) { return errors(h, 0.3, false).umax; },
+        {1.0 / 32, 1.0 / 45, 1.0 / 64},
+        [](double h) { return errors(h, 0.2, false).umax; },
         1.3,
-        0.008);
+        0.004);
 }
 
-// Coarser than this the errors of the Nusselt number have another sign.
+// With more particles the errors of the Nusselt number change their sign, at some 55 across.
 TEST(FluidCavity, ConvergesWithTheLaplacianOfFourthOrder) {
-    const std::vector<double> spacings{1.0 / 32, 1.0 / 45, 1.0 / 64};
-    std::map<double, Errors> all;
+    const std::vector<double> spacings{1.0 / 28, 1.0 / 36, 1.0 / 45};
+    std::map<double, Means> all;
     for (const double spacing : spacings) {
         all[spacing] = errors(spacing, 0.2, true);
     }
     test::expect_order(
-        spacings, [&](double h) { return all[h].nusselt; }, 1.6, 0.001);
+        spacings, [&](double h) { return all[h].nusselt; }, 1.6, 0.0025);
     test::expect_order(
-        spacings, [&](double h) { return all[h].vmax; }, 1.6, 0.004);
+        spacings, [&](double h) { return all[h].vmax; }, 1.6, 0.0015);
+    const Means fine = errors(1.0 / 64, 0.13, true);
+    EXPECT_LT(fine.nusselt, 0.001);
+    EXPECT_LT(fine.umax, 0.003);
+    EXPECT_LT(fine.vmax, 0.0015);
+}
+
+/// What flows up through the left half of the middle line flows to the right through the upper half
+/// of the other: as far apart as the velocities have a divergence.
+TEST(FluidCavity, WhatFlowsUpFlowsAcross) {
+    Fluid fluid(heated_cavity(Ra, 1.0 / 40));
+    fluid.advance(0.1);
+    double up = 0, across = 0;
+    for (int k = 0; k < 25; ++k) {
+        fluid.advance(0.002);
+        for (int i = 0; i < 400; ++i) {
+            const double s = 0.5 * (i + 0.5) / 400;
+            up += fluid.at({s, 0.5}).velocity.y;
+            across += fluid.at({0.5, 0.5 + s}).velocity.x;
+        }
+    }
+    EXPECT_NEAR(up / across, 1, 0.004); // measured 0.9985; 0.988 without what this is about
 }
 
 /// What the closure gives back and takes, summed over the steps without signs, over the heat that

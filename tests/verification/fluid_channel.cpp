@@ -22,7 +22,7 @@ double taylor_green_error(double spacing) {
     config.spacing = spacing;
     config.region = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
     config.kinematic_viscosity = 1;
-    config.sound_speed = 300; // as the pressure dies, div v = -(dp/dt)/(rho c^2/2): about 1e-3
+    config.sound_speed = 600; // as the pressure dies, div v = -(dp/dt)/(rho c^2/2): 3e-4
     config.walls = {{.name = "all", .around = 0, .slip = true}};
     Fluid fluid(config);
     const auto velocity = [&](Vec2 x, double t) {
