@@ -50,6 +50,13 @@ ControlLink::ControlLink(zmq::context_t& context, const std::string& address)
 ControlLink::~ControlLink() {
     (void)near_.send(zmq::message_t(), zmq::send_flags::none);
     thread_.join();
+    monitor_.update();
+    if (lost())
+        dealer_.set(zmq::sockopt::linger, 0); // nobody is there for the last words
+}
+
+bool ControlLink::lost() const {
+    return monitor_.ever_open() && !monitor_.any_open();
 }
 
 void ControlLink::send(const v1::ToOrchestrator& message) {
@@ -154,7 +161,7 @@ void ControlLink::forward_to_orchestrator() {
 
 void ControlLink::forward_to_solver() {
     monitor_.update();
-    const bool lost = monitor_.ever_open() && !monitor_.any_open();
+    const bool gone = lost();
     zmq::message_t frame;
     while (!ending_ && dealer_.recv(frame, zmq::recv_flags::dontwait)) {
         v1::ToSolver message;
@@ -164,7 +171,7 @@ void ControlLink::forward_to_solver() {
         else
             (void)far_.send(frame, zmq::send_flags::none);
     }
-    if (lost && !ending_)
+    if (gone && !ending_)
         end("The orchestrator has closed the connection.");
 }
 

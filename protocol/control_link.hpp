@@ -83,6 +83,7 @@ class ControlLink {
     void forward_to_solver();
     void beat();
     void end(const std::string& reason);
+    bool lost() const; // the orchestrator was there and is gone
 
     Pulse pulse_;
     std::deque<v1::ToSolver> inbox_;

@@ -42,6 +42,11 @@ void Exchange::receive_start(std::vector<Chain>& chains, InterfaceMotion& start)
 
 void Exchange::tell_failed(const v1::Failed& failed) noexcept {
     try {
+        monitor_.update();
+        if (lost()) {
+            pair_.set(zmq::sockopt::linger, 0); // nobody is there for the last words
+            return;
+        }
         *outgoing_.mutable_failed() = failed;
         zmq::message_t frame(outgoing_.ByteSizeLong());
         outgoing_.SerializeToArray(frame.data(), static_cast<int>(frame.size()));
