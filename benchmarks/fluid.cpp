@@ -190,8 +190,8 @@ void WallEstimates(benchmark::State& state) {
     const Square& s = square(state);
     WallEstimate estimate(s.spacing);
     for (auto _ : state) {
-        estimate.slopes(s.boundary, s.evaluation, s.particles, {1, 1, 1});
-        estimate.tractions(s.boundary, s.evaluation, s.particles, s.hydrostatics, {1, 1, 1}, {});
+        estimate.slopes(s.boundary, s.evaluation, s.particles, {1, 1, 1, 1});
+        estimate.tractions(s.boundary, s.evaluation, s.particles, s.hydrostatics, {1, 1, 1, 1}, {});
     }
     report(state, s.boundary.cells().size());
 }

@@ -81,10 +81,11 @@ void Fluid::Implementation::hold_off_walls(const HalfStep& half) {
         wall_way = std::max(wall_way, norm(interface_position_[i] - interface_before_[i]));
     }
     // Before and after it the evaluation in the middle of a step knows what is within reach of
-    // walls. (What a diverging velocity throws farther than that, the next half step finds behind
-    // its wall.)
-    const bool looked =
-        evaluated_ && std::max(wall_way, wall_way_) < (half.with_shift ? 1 : 0.5) * config.spacing;
+    // walls, 2.6 spacings: more than flow and shift (0.6 until the middle of the next step) and a
+    // wall (half of one) can bring together. (What a diverging velocity throws farther than that,
+    // the next half step finds behind its wall.)
+    const double way_since = wall_way + (half.with_shift ? 0 : wall_way_);
+    const bool looked = evaluated_ && way_since < 0.5 * config.spacing;
     wall_way_ = wall_way;
     held_.resize(chunks_of(particles.size()));
     for_chunks(

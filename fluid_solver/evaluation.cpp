@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstring>
+#include <optional>
 
 namespace duet::fluid {
 
@@ -194,7 +195,8 @@ double lattice_error(const Kernel& kernel, double spacing) {
     return fourth / (12 * second);
 }
 
-/// `Work::quartic`.
+/// sum 2 V F e e f (xx, xy, yy) and sum w f (x, y), m4, of f = z^4 - 4 d z^3, z from the particle
+/// towards its only wall, at d: what of (d - z)^4 is more than quadratic.
 std::array<float, 5> quartic_moments(const Contact& wall,
                                      const Neighbours& near,
                                      std::span<const PairBlock> pairs,
@@ -242,11 +244,9 @@ struct Evaluation::Work {
     DirectionWeights directions;
     std::vector<Contact> contacts;
     WallSums walls;
-    /// sum 2 V F e e f (xx, xy, yy) and sum w f of f = z^4 - 4 d z^3, z from the particle towards
-    /// its only wall, at d: what of q (d - z)^4 is more than quadratic.
-    std::array<float, 5> quartic;
-    Mat2 pressure;                             ///< near walls: L of the pressure
-    std::size_t u = 0, v = 0, temperature = 0; ///< places in the batch of operators
+    std::optional<std::array<float, 5>> quartic; ///< `quartic_moments`, where they are asked for
+    Mat2 pressure;                               ///< near walls: L of the pressure
+    std::size_t u = 0, v = 0, temperature = 0;   ///< places in the batch of operators
 };
 
 /// What one thread needs for a batch of particles: first the moments of each, then all operators,
@@ -329,7 +329,9 @@ bool Evaluation::gather(
     // beside two faces their sums differ from the pressure's.
     const WallSums& w = work.walls;
     ghosts_.sums(scene.boundary, work.contacts, work.walls);
-    if (scene.input.fourth_order && work.contacts.size() == 1 && w.temperature.K != 0) {
+    work.quartic.reset();
+    if (scene.input.fourth_order && work.contacts.size() == 1 && w.temperature.K != 0
+        && work.contacts[0].distance < sample_depth_) {
         work.quartic = quartic_moments(
             work.contacts[0],
             s.near,
@@ -464,17 +466,17 @@ void Evaluation::beside_walls(std::size_t a,
                             scene.input.spacing);
 }
 
-/// What D makes of d^4 beside the wall beyond its Laplacian, 12 d^2: all of it in the first row,
-/// less in the second, since in layers of a few spacings T departs from d^4 there.
-double Evaluation::quartic_error(const Scene& scene, const Scratch& s, const Work& work) const {
-    const DirichletSums& w = work.walls.temperature;
-    if (!scene.input.fourth_order || work.contacts.size() != 1 || w.K == 0) {
+/// What D makes of d^4 beside the only wall beyond its Laplacian, 12 d^2, m2: all of it in the
+/// first row, less in the second, since in layers of a few spacings T departs from d^4 there.
+double Evaluation::quartic_error(const Scratch& s, const Work& work) const {
+    if (!work.quartic) {
         return 0;
     }
+    const DirichletSums& w = work.walls.temperature;
     const double d = work.contacts[0].distance, at_wall = -3 * d * d * d * d;
     const auto B = s.operators.B(work.temperature);
     const auto E = s.operators.E(work.temperature);
-    const auto& f = work.quartic;
+    const auto& f = *work.quartic;
     const Vec2 gradient =
         s.operators.L(work.temperature) * Vec2{f[3] + w.S.x * at_wall, f[4] + w.S.y * at_wall};
     const double pairs = B[0] * f[0] + B[1] * f[1] + B[2] * f[2];
@@ -508,7 +510,7 @@ void Evaluation::take_samples(std::size_t a,
     if (nearest != none) {
         const Vec2 n = scene.boundary.cells()[out[nearest].cell].normal;
         out[nearest].bend_error = bend_error(s.operators.A(work.u), s.operators.A(work.v), n);
-        out[nearest].quartic_error = quartic_error(scene, s, work);
+        out[nearest].quartic_error = quartic_error(s, work);
     }
 }
 

@@ -48,11 +48,9 @@ struct WallSample {
     Lanes wall;          ///< u, v, 0, T of the wall at the foot point
     Lanes fields;        ///< of the particle when it was evaluated: what diffusion was given
     double acceleration; ///< of the wall along its normal
-    // What profiles that are typical beside a wall make of the operators; 0 but at the wall
-    // nearest.
-    double bend_error = 0; ///< m: of div v, for each 1/(m s) of u_n,nn
-    double quartic_error =
-        0; ///< m2: of lap T over the step, for each K/m4 of q in T_w - g d + q d^4
+    // Errors of the operators on profiles that are typical beside a wall; 0 but at the nearest.
+    double bend_error = 0;    ///< m: of div v, for each 1/(m s) of u_n,nn
+    double quartic_error = 0; ///< m2: of lap T, for each K/m4 of q in T_w - g d + q d^4
 };
 
 /// Parameters of the pass.
@@ -145,7 +143,7 @@ class Evaluation {
                       const Scratch& s,
                       const Work& work,
                       std::vector<WallSample>& out) const;
-    double quartic_error(const Scene& scene, const Scratch& s, const Work& work) const;
+    double quartic_error(const Scratch& s, const Work& work) const;
     /// Returns false if particles have more neighbours than there is room for.
     template <bool Heat>
     bool run_chunk(std::size_t chunk,

@@ -66,8 +66,8 @@ class OperatorBatch {
     Mat2 L(std::size_t i) const { return {L_[0][i], L_[1][i], L_[2][i], L_[3][i]}; }
     std::array<float, 3> B(std::size_t i) const { return {B_[0][i], B_[1][i], B_[2][i]}; }
     std::array<float, 2> E(std::size_t i) const { return {E_[0][i], E_[1][i]}; }
-    /// A_ijk = L_il [sum V F x_l x_j x_k + walls]: the corrected gradient's error is A_ijk H_jk
-    /// / 2.
+    /// A_ijk = L_il [sum V F x_l x_j x_k + walls], m: with the second derivatives H the corrected
+    /// gradient errs by A_ijk H_jk / 2.
     Third A(std::size_t i) const {
         return {Symmetric{A_[0][i], A_[1][i], A_[2][i]}, Symmetric{A_[3][i], A_[4][i], A_[5][i]}};
     }

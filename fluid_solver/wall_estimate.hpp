@@ -64,11 +64,12 @@ class WallEstimate {
         Lanes rise{}; ///< sum w d (f_wall - f_a + bend d^2)
         Lanes lap{};  ///< sum w d^3 lap u, w d^3 lap v, w d^3 (quartic error), w d^2 lap T
         std::uint16_t compartment = 0;
-        /// Adds a share of another cell's sums; this one's middle lies `ahead` of the other's.
+        /// Adds a share of another cell's sums; this one's middle lies `ahead` of the other's,
+        /// which matters to no slope.
         void add(double share, double ahead, const Sums& other);
         bool empty() const { return w[0] == 0; }
     };
-    struct PressureSums {
+    struct PressureSums { // likewise
         double w = 0;
         double wp = 0;       ///< sum w p_wall, each p_wall taken to the middle of the cell
         double wp_along = 0; ///< sum w dp/ds along the wall

@@ -1,7 +1,5 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """The heated cavity's start from rest by finite volumes on a staggered grid, for mean values over a window of time.
-
-    transient.py RAYLEIGH CELLS END FILE.csv
 
 In units of L and L^2/alpha, Pr = 0.71, hot wall at x = 0. Central differences of second order on CELLS x CELLS equal cells,
 three Runge-Kutta stages (strong stability preserving) with an exact projection by cosine transforms after each. Writes, every
@@ -9,13 +7,20 @@ three Runge-Kutta stages (strong stability preserving) with an exact projection 
 at y = 1/2 (by quartics through five points). Needs numpy and scipy; 128 cells to 0.3 at Ra = 1e5 take two minutes.
 """
 
-import sys
+import argparse
 
 import numpy as np
 from scipy.fft import dctn, idctn
 
-Ra, n, end, file = float(sys.argv[1]), int(sys.argv[2]), float(sys.argv[3]), sys.argv[4]
-Pr = 0.71
+parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+parser.add_argument("rayleigh", type=float)
+parser.add_argument("cells", type=int, help="along a side; even, 8 or more")
+parser.add_argument("end", type=float, help="in L^2/alpha")
+parser.add_argument("file", help="table to write, CSV")
+given = parser.parse_args()
+if given.cells < 8 or given.cells % 2 or not given.rayleigh > 0 or not given.end > 0:
+    parser.error("rayleigh and end must be positive, cells even and 8 or more")
+Ra, n, Pr = given.rayleigh, given.cells, 0.71
 h = 1 / n
 
 # The Laplacian's eigenvalues for the pressure, with its mean left free.
@@ -77,7 +82,7 @@ fields = [np.zeros((n + 1, n)), np.zeros((n, n + 1)), np.zeros((n, n))]
 centres = (np.arange(n) + 0.5) * h
 every = int(np.ceil(0.0005 / min(0.24 * h * h, 0.6 * h / (0.28 * np.sqrt(Ra)))))
 rows = []
-for record in range(round(end / 0.0005)):
+for record in range(round(given.end / 0.0005)):
     for _ in range(every):
         first = stage(fields, fields, 1, 0.0005 / every)
         second = stage(fields, first, 0.25, 0.0005 / every)
@@ -85,4 +90,4 @@ for record in range(round(end / 0.0005)):
     flux = rates(*fields)[3].mean(axis=1)
     rows.append([(record + 1) * 0.0005, flux[0], flux[-1], flux[n // 2],
                  largest(fields[0][n // 2], centres), largest(fields[1][:, n // 2], centres)])
-np.savetxt(file, rows, delimiter=",", comments="", header="time,nusselt_hot,nusselt_cold,nusselt_mid,u_max,v_max")
+np.savetxt(given.file, rows, delimiter=",", comments="", header="time,nusselt_hot,nusselt_cold,nusselt_mid,u_max,v_max")
