@@ -3,7 +3,11 @@
 
 #pragma once
 
+#include <omp.h>
+
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cstddef>
 
 namespace duet::fluid {
@@ -14,15 +18,40 @@ inline std::size_t chunks_of(std::size_t n) {
     return (n + chunk_size - 1) / chunk_size;
 }
 
-/// Calls body(chunk, first, last) for each chunk of [0, n).
+/// The equal parts that a pass falls into, one for each thread; further threads help with these.
+constexpr std::size_t most_stretches = 16;
+inline std::size_t stretches_of(int threads) {
+    return std::clamp(static_cast<std::size_t>(threads), std::size_t{1}, most_stretches);
+}
+
+/// Chunks that are handed out one by one, in their order, to whoever asks.
+struct alignas(64) Stretch {
+    std::atomic<std::size_t> next{0};
+    std::size_t end = 0;
+};
+
+/// Calls body(chunk, first, last) for each chunk of [0, n). Each thread begins with the stretch of
+/// chunks that it has in every pass, and so in its cache; then it helps with the others'.
 template <class Body>
 void for_chunks(std::size_t n, int threads, const Body& body) {
-    const auto chunks = static_cast<long>(chunks_of(n));
-    // Chunks are handed out in pairs: of one pair a second thread would only wait for the end.
-#pragma omp parallel for schedule(dynamic, 2) num_threads(threads) if (threads > 1 && chunks > 2)
-    for (long c = 0; c < chunks; ++c) {
-        const std::size_t first = static_cast<std::size_t>(c) * chunk_size;
-        body(static_cast<std::size_t>(c), first, std::min(n, first + chunk_size));
+    const std::size_t chunks = chunks_of(n);
+    // Of two chunks a second thread would only wait for the end.
+    const std::size_t count = chunks > 2 ? stretches_of(threads) : 1;
+    std::array<Stretch, most_stretches> stretches;
+    for (std::size_t s = 0; s < count; ++s) {
+        stretches[s].next = chunks * s / count;
+        stretches[s].end = chunks * (s + 1) / count;
+    }
+    // One loop for any number of threads: of two the compiler might round one in another way.
+#pragma omp parallel num_threads(threads) if (count > 1)
+    {
+        const auto own = static_cast<std::size_t>(omp_get_thread_num());
+        for (std::size_t s = 0; s < count; ++s) {
+            Stretch& stretch = stretches[(own + s) % count];
+            for (std::size_t c = stretch.next++; c < stretch.end; c = stretch.next++) {
+                body(c, c * chunk_size, std::min(n, (c + 1) * chunk_size));
+            }
+        }
     }
 }
 
@@ -34,6 +63,18 @@ void for_particles(std::size_t n, int threads, const Body& body) {
             body(i);
         }
     });
+}
+
+/// Calls body(range, first, last) for the equal ranges of [0, n) that threads count and move at
+/// once: for what depends on the order of the particles, but not on where it is divided.
+template <class Body>
+void for_ranges(std::size_t n, int threads, const Body& body) {
+    const auto ranges = static_cast<long>(stretches_of(threads));
+#pragma omp parallel for num_threads(threads) schedule(static, 1) if (ranges > 1)
+    for (long r = 0; r < ranges; ++r) {
+        const auto range = static_cast<std::size_t>(r), of = static_cast<std::size_t>(ranges);
+        body(range, n * range / of, n * (range + 1) / of);
+    }
 }
 
 } // namespace duet::fluid

@@ -37,50 +37,56 @@ void Particles::resize(std::size_t n) {
     compartment.resize(n);
 }
 
-namespace {
-
-template <class T>
-void reorder(std::vector<T>& values,
-             std::vector<T>& spare,
-             const std::vector<std::uint32_t>& to,
-             int threads) {
-    spare.resize(values.size());
-    for_particles(values.size(), threads, [&](std::size_t i) { spare[to[i]] = values[i]; });
-    values.swap(spare);
+/// Calls visit(values, spare) for each array.
+template <class Visit>
+void Particles::for_arrays(const Visit& visit) {
+    visit(x, spare_.x);
+    visit(y, spare_.y);
+    visit(fields, spare_.fields);
+    visit(relaxing, spare_.relaxing);
+    visit(rate, spare_.rate);
+    visit(laplacian, spare_.laplacian);
+    visit(identity, spare_.identity);
+    visit(compartment, spare_.compartment);
 }
 
-} // namespace
-
+/// Each thread counts and moves a range of the particles; in a cell the ranges follow one another.
 void Particles::sort(const CellGrid& grid, int threads) {
-    const std::size_t n = size();
+    const std::size_t n = size(), cells = grid.size();
+    const std::size_t ranges = stretches_of(threads);
     cell_.resize(n);
-    target_.resize(n);
-    cell_start_.assign(grid.size() + 1, 0);
-    for_particles(n, threads, [&](std::size_t i) {
-        cell_[i] = static_cast<std::uint32_t>(grid.index(position(i)));
+    next_.resize(ranges * cells);
+    for_ranges(n, threads, [&](std::size_t range, std::size_t first, std::size_t last) {
+        std::uint32_t* count = &next_[range * cells];
+        std::fill_n(count, cells, 0);
+        for (std::size_t i = first; i < last; ++i) {
+            cell_[i] = static_cast<std::uint32_t>(grid.index(position(i)));
+            ++count[cell_[i]];
+        }
     });
-    for (std::size_t i = 0; i < n; ++i) {
-        ++cell_start_[cell_[i] + 1];
+    cell_start_.resize(cells + 1);
+    std::uint32_t before = 0;
+    for (std::size_t c = 0; c < cells; ++c) {
+        cell_start_[c] = before;
+        for (std::size_t range = 0; range < ranges; ++range) {
+            before += std::exchange(next_[range * cells + c], before);
+        }
     }
-    for (std::size_t c = 0; c < grid.size(); ++c) {
-        cell_start_[c + 1] += cell_start_[c];
-    }
-    // Each particle takes the next free place of its cell; the starts are shifted back afterwards.
-    for (std::size_t i = 0; i < n; ++i) {
-        target_[i] = cell_start_[cell_[i]]++;
-    }
-    for (std::size_t c = grid.size(); c > 0; --c) {
-        cell_start_[c] = cell_start_[c - 1];
-    }
-    cell_start_[0] = 0;
-    reorder(x, spare_, target_, threads);
-    reorder(y, spare_, target_, threads);
-    reorder(fields, spare_fields_, target_, threads);
-    reorder(relaxing, spare_relaxing_, target_, threads);
-    reorder(rate, spare_slope_, target_, threads);
-    reorder(laplacian, spare_slope_, target_, threads);
-    reorder(identity, spare_identity_, target_, threads);
-    reorder(compartment, spare_compartment_, target_, threads);
+    cell_start_[cells] = before;
+    for_arrays([](auto& values, auto& spare) { spare.resize(values.size()); });
+    for_ranges(n, threads, [&](std::size_t range, std::size_t first, std::size_t last) {
+        std::uint32_t* next = &next_[range * cells];
+        std::vector<std::uint32_t>& to = cell_;
+        for (std::size_t i = first; i < last; ++i) {
+            to[i] = next[cell_[i]]++;
+        }
+        for_arrays([&](auto& values, auto& spare) {
+            for (std::size_t i = first; i < last && !values.empty(); ++i) {
+                spare[to[i]] = values[i];
+            }
+        });
+    });
+    for_arrays([](auto& values, auto& spare) { values.swap(spare); });
 }
 
 } // namespace duet::fluid

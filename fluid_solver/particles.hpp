@@ -125,8 +125,7 @@ inline float recent(float before, double now) {
 }
 
 /// Structure of arrays; the fields u, v, p, T of one particle lie side by side.
-class Particles {
-  public:
+struct ParticleArrays {
     std::vector<double> x, y;
     std::vector<Fields> fields;
     std::vector<float> relaxing;         ///< P, Pa: what the pressure answered of late
@@ -134,7 +133,10 @@ class Particles {
     std::vector<Slope> laplacian;        ///< of u, v, T in the step before, where it is asked for
     std::vector<std::uint32_t> identity; ///< constant through a run
     std::vector<std::uint16_t> compartment; ///< of the fluid's connected parts
+};
 
+class Particles : public ParticleArrays {
+  public:
     std::size_t size() const { return x.size(); }
     Vec2 position(std::size_t i) const { return {x[i], y[i]}; }
     void resize(std::size_t n);
@@ -148,13 +150,13 @@ class Particles {
   private:
     friend class Fluid; // which saves and restores the order
 
-    std::vector<std::uint32_t> cell_, cell_start_, target_;
-    std::vector<double> spare_;
-    std::vector<Fields> spare_fields_;
-    std::vector<float> spare_relaxing_;
-    std::vector<Slope> spare_slope_;
-    std::vector<std::uint32_t> spare_identity_;
-    std::vector<std::uint16_t> spare_compartment_;
+    template <class Visit>
+    void for_arrays(const Visit& visit);
+
+    ParticleArrays spare_;
+    std::vector<std::uint32_t> cell_; ///< of each particle, then its place in the new order
+    std::vector<std::uint32_t> cell_start_;
+    std::vector<std::uint32_t> next_; ///< place of a cell, by range of particles
 };
 
 } // namespace duet::fluid
