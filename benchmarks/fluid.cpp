@@ -111,7 +111,7 @@ void WeightsAndMoments(benchmark::State& state) {
             surroundings.find(x, support, near);
         }
     });
-    near.pad(support, 0);
+    near.pad(2 * support, 0);
     for (auto _ : state) {
         Moments m = weigh(kernel, 1, near, pairs, directions);
         benchmark::DoNotOptimize(m);

@@ -310,7 +310,7 @@ bool Evaluation::gather(
     if (s.blocks + s.near.eights() > chunk_blocks_) {
         return false;
     }
-    s.near.pad(support, static_cast<std::uint32_t>(a));
+    s.near.pad(2 * support, static_cast<std::uint32_t>(a));
     count[a] = static_cast<std::uint8_t>(s.near.count);
     first_block_[a] = static_cast<std::uint16_t>(s.blocks);
     s.blocks += s.near.eights();

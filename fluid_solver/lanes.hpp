@@ -1,10 +1,13 @@
-// Several numbers in one register. The compiler turns these types into whatever the processor has;
-// nothing here asks for a particular one.
+// Several numbers in one register. The compiler turns these types into whatever the processor has.
 
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstring>
+#ifdef __AVX__
+#include <immintrin.h>
+#endif
 
 namespace duet::fluid {
 
@@ -50,6 +53,41 @@ inline Eight load_eight(const float* from) {
 
 inline void store(float* to, const Eight& r) {
     std::memcpy(to, &r, sizeof r);
+}
+
+/// 1/sqrt(x) for positive x, to 4e-7 of it.
+inline Eight inverse_root(const Eight& x) {
+#ifdef __AVX__
+    const Eight estimate = _mm256_rsqrt_ps(x); // to 4e-4, and a step of Newton's method
+    return estimate * (1.5F - 0.5F * x * estimate * estimate);
+#else
+    Eight r;
+    for (std::size_t k = 0; k < eight; ++k) {
+        r[k] = 1 / std::sqrt(x[k]);
+    }
+    return r;
+#endif
+}
+
+/// Rows to columns.
+inline void transpose(Eight (&rows)[eight]) {
+    Eight pairs[eight], fours[eight];
+    for (std::size_t i = 0; i < eight; i += 2) {
+        pairs[i] = __builtin_shufflevector(rows[i], rows[i + 1], 0, 8, 1, 9, 4, 12, 5, 13);
+        pairs[i + 1] = __builtin_shufflevector(rows[i], rows[i + 1], 2, 10, 3, 11, 6, 14, 7, 15);
+    }
+    for (std::size_t i = 0; i < eight; i += 4) {
+        for (std::size_t j = 0; j < 2; ++j) {
+            const Eight &p = pairs[i + j], &q = pairs[i + j + 2];
+            fours[i + 2 * j] = __builtin_shufflevector(p, q, 0, 1, 8, 9, 4, 5, 12, 13);
+            fours[i + 2 * j + 1] = __builtin_shufflevector(p, q, 2, 3, 10, 11, 6, 7, 14, 15);
+        }
+    }
+    for (std::size_t i = 0; i < 4; ++i) {
+        const Eight &p = fours[i], &q = fours[i + 4];
+        rows[i] = __builtin_shufflevector(p, q, 0, 1, 2, 3, 8, 9, 10, 11);
+        rows[i + 4] = __builtin_shufflevector(p, q, 4, 5, 6, 7, 12, 13, 14, 15);
+    }
 }
 
 /// The sum over the lanes of each of eight registers.

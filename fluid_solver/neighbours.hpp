@@ -19,7 +19,7 @@ constexpr std::size_t most_neighbours = 64;
 
 /// x = x_a - x_b and the index of each neighbour b, in the order of the cells. The arrays are
 /// filled up to whole eights with entries at (pad, 0) and the index of the particle itself, which
-/// count for nothing if pad is the support.
+/// count for nothing if pad lies beyond the support.
 struct Neighbours {
     std::size_t count = 0;
     alignas(32) std::array<float, most_neighbours + eight> x, y;

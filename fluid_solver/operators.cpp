@@ -14,16 +14,10 @@ Moments weigh(const Kernel& kernel,
     Eight wx{}, wy{}, wxx{}, wxy{}, wyy{}, xxx{}, xxy{}, xyy{}, yyy{};
     Eight sxxx{}, sxxy{}, qxxxx{}, qxxxy{};
     for (std::size_t block = 0; block < near.eights(); ++block) {
-        const float *x_at = &near.x[block * eight], *y_at = &near.y[block * eight];
-        alignas(32) float F_of[eight], per_r2[eight];
-#pragma omp simd
-        for (std::size_t k = 0; k < eight; ++k) {
-            const float r2 = x_at[k] * x_at[k] + y_at[k] * y_at[k];
-            const float s = 1 - std::sqrt(r2) * inverse;
-            F_of[k] = s > 0 ? scale * s * s * s : 0;
-            per_r2[k] = 1 / r2;
-        }
-        const Eight x = load_eight(x_at), y = load_eight(y_at), F = load_eight(F_of);
+        const Eight x = load_eight(&near.x[block * eight]), y = load_eight(&near.y[block * eight]);
+        const Eight r2 = x * x + y * y, per_r = inverse_root(r2), ratio = per_r * per_r;
+        const Eight s = 1 - r2 * per_r * inverse;
+        const Eight F = s > 0 ? scale * s * s * s : Eight{};
         const Eight Fx = F * x, Fy = F * y;
         PairBlock& out = pairs[block];
         store(out.x, Fx);
@@ -32,7 +26,6 @@ Moments weigh(const Kernel& kernel,
         std::memcpy(out.index, &near.index[block * eight], sizeof out.index);
         const Eight xx = x * x, xy = x * y;
         const Eight Fxx = Fx * x, Fxy = Fx * y, Fyy = Fy * y;
-        const Eight ratio = load_eight(per_r2);
         const Eight Gxx = Fxx * ratio, Gxy = Fxy * ratio, Gyy = Fyy * ratio;
         store(&directions.xx[block * eight], 2 * Gxx);
         store(&directions.xy[block * eight], 4 * Gxy);
@@ -51,10 +44,10 @@ Moments weigh(const Kernel& kernel,
         qxxxx += Gxx * xx;
         qxxxy += Gxx * xy;
     }
+    const Eight sums[2] = {lane_sums(wx, wy, wxx, wxy, wyy, xxx, xxy, xyy),
+                           lane_sums(yyy, sxxx, sxxy, qxxxx, qxxxy, Eight{}, Eight{}, Eight{})};
     Moments m;
-    alignas(32) float sums[2 * eight];
-    store(sums, lane_sums(wx, wy, wxx, wxy, wyy, xxx, xxy, xyy));
-    store(sums + eight, lane_sums(yyy, sxxx, sxxy, qxxxx, qxxxy, Eight{}, Eight{}, Eight{}));
+    static_assert(sizeof m == sizeof sums);
     std::memcpy(&m, sums, sizeof m);
     return m;
 }
@@ -66,22 +59,12 @@ Mat2 correction(const Moments& m, const Mat2& walls) {
                     walls.yy - static_cast<double>(m.wyy)});
 }
 
-void OperatorBatch::put_moments(const Moments& m) {
-    float values[13];
-    static_assert(sizeof values == sizeof m);
-    std::memcpy(values, &m, sizeof m);
-    for (std::size_t k = 0; k < 13; ++k) {
-        moments_[k][size_] = values[k];
-    }
-}
-
 void OperatorBatch::add(const Moments& m) {
     if (walled_[size_]) {
         add(m, {}, {}, {});
         walled_[size_ - 1] = false;
     } else {
-        put_moments(m);
-        ++size_;
+        rows_[size_++] = m;
     }
 }
 
@@ -89,7 +72,7 @@ void OperatorBatch::add(const Moments& m,
                         const Mat2& M,
                         const Third& third,
                         const DirichletSums& walls) {
-    put_moments(m);
+    rows_[size_] = m;
     walled_[size_] = true;
     const std::size_t i = size_++;
     const auto put = [&](auto& columns, std::initializer_list<double> wall_values) {
@@ -127,6 +110,20 @@ inline float admissible_part(float Bxx, float Bxy, float Byy) {
 ///     sum_mn B_mn [-q_mnjk - s_mni A_ijk] = delta_jk + (K xi_j xi_k - K xi_i A_ijk)/2.
 /// Column mn of the matrix; that of B_xy counts twice, because B is symmetric. By Cramer's rule.
 void OperatorBatch::solve() {
+    for (std::size_t i = 0; i < size_; i += eight) {
+        for (std::size_t half = 0; half < 2; ++half) {
+            Eight rows[eight];
+            for (std::size_t k = 0; k < eight; ++k) {
+                std::memcpy(&rows[k],
+                            reinterpret_cast<const float*>(&rows_[i + k]) + half * eight,
+                            sizeof rows[k]);
+            }
+            transpose(rows);
+            for (std::size_t k = 0; k < eight && half * eight + k < moments_.size(); ++k) {
+                store(&moments_[half * eight + k][i], rows[k]);
+            }
+        }
+    }
     const auto& [wx, wy, wxx, wxy, wyy, xxx, xxy, xyy, yyy, sxxx, sxxy, qxxxx, qxxxy] = moments_;
     const std::size_t whole = (size_ + eight - 1) / eight * eight; // what fills it up is not read
 #pragma omp simd

@@ -23,7 +23,7 @@ struct alignas(32) PairBlock {
 };
 
 /// Sums over the fluid neighbours, x = x_ab. (What is missing follows from xx + yy = r^2.)
-struct Moments {
+struct alignas(2 * sizeof(Eight)) Moments {
     float wx = 0, wy = 0;                     ///< sum w
     float wxx = 0, wxy = 0, wyy = 0;          ///< sum w x^T
     float xxx = 0, xxy = 0, xyy = 0, yyy = 0; ///< sum V F x_l x_j x_k
@@ -36,7 +36,7 @@ struct DirectionWeights {
     alignas(32) std::array<float, most_neighbours> xx, xy, yy;
 };
 
-/// Weights and moments of the neighbours of one particle; near.pad(support, a) has been called.
+/// Weights and moments of the neighbours of one particle; near.pad() has been called.
 Moments weigh(const Kernel& kernel,
               float volume,
               const Neighbours& near,
@@ -76,11 +76,11 @@ class OperatorBatch {
 
   private:
     using Column = std::array<float, room>;
-    void put_moments(const Moments& moments);
 
     std::size_t size_ = 0;
     std::array<bool, room> walled_{}; ///< there is something in M_, third_ and K_
-    alignas(32) std::array<Column, 13> moments_{};
+    std::array<Moments, room> rows_{};
+    alignas(32) std::array<Column, 13> moments_{}; ///< the same by columns
     alignas(32) std::array<Column, 4> M_{};
     alignas(32) std::array<Column, 6> third_{};
     alignas(32) std::array<Column, 5> K_{}; ///< K xi_x, K xi_y, K xi xi

@@ -340,7 +340,7 @@ TEST(FluidOperators, TensorIsTheUnitTensorInsideALattice) {
     Neighbours near;
     ASSERT_TRUE(surroundings.collect(particles, grid, grid.column(x.x), grid.row(x.y)));
     ASSERT_TRUE(surroundings.find(x, support, near));
-    near.pad(support, static_cast<std::uint32_t>(middle));
+    near.pad(2 * support, static_cast<std::uint32_t>(middle));
     PairBlock pairs[most_neighbours / eight];
     DirectionWeights directions;
     OperatorBatch operators;
