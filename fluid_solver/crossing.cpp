@@ -80,21 +80,22 @@ void Fluid::Implementation::hold_off_walls(const HalfStep& half) {
     for (std::size_t i = 0; i < interface_before_.size(); ++i) {
         wall_way = std::max(wall_way, norm(interface_position_[i] - interface_before_[i]));
     }
-    // Before and after it the evaluation in the middle of a step knows what is within reach of
-    // walls, 2.6 spacings: more than flow and shift (0.6 until the middle of the next step) and a
-    // wall (half of one) can bring together. (What a diverging velocity throws farther than that,
-    // the next half step finds behind its wall.)
-    const double way_since = wall_way + (half.with_shift ? 0 : wall_way_);
-    const bool looked = evaluated_ && way_since < 0.5 * config.spacing;
-    wall_way_ = wall_way;
+    // No particle and no wall have come nearer than by the ways of those that went farthest. So the
+    // distances of the evaluation, half a step or a whole one ago, tell what needs no look.
+    const double nearer = wall_way + *std::max_element(farthest_.begin(), farthest_.end());
+    const double since = half.with_shift ? nearer : nearer + nearer_before_;
+    const double reach = since + std::max(nearer, close * config.spacing);
+    const bool known = evaluated_ && reach < evaluation_.kernel().support();
+    nearer_before_ = nearer;
     held_.resize(chunks_of(particles.size()));
     for_chunks(
         particles.size(), config.threads, [&](std::size_t c, std::size_t first, std::size_t last) {
             held_[c].touches.clear();
             held_[c].escaped.reset();
             for (std::size_t a = first; a < last; ++a) {
-                if (looked ? evaluation_.wall(a) != nullptr
-                           : boundary_.near(particles.position(a))) {
+                const WallTerms* wall = known ? evaluation_.wall(a) : nullptr;
+                if (known ? wall != nullptr && wall->distance <= reach
+                          : boundary_.near(particles.position(a))) {
                     hold_off(a, half, wall_way, held_[c]);
                 }
             }
@@ -115,11 +116,9 @@ void Fluid::Implementation::hold_off(std::size_t a,
                                      Held& held) {
     const Vec2 x = particles.position(a);
     const Boundary::Nearest wall = boundary_.nearest(x);
-    if (wall.face == nullptr || wall.distance > config.spacing + wall_way) {
-        return; // flow and shift go 0.41 spacings at most
-    }
     const Vec2 gone = way(a, half.length, half.with_shift);
-    if (wall.distance > std::max(norm(gone) + wall_way, close * config.spacing)) {
+    if (wall.face == nullptr
+        || wall.distance > std::max(norm(gone) + wall_way, close * config.spacing)) {
         return; // it cannot have been on the other side
     }
     auto crossing = boundary_.first_crossing(x - gone, x, interface_before_);

@@ -94,6 +94,20 @@ void drop_hidden(const std::vector<Contact>& contacts, Neighbours& near) {
     }
 }
 
+/// Of the point of a wall that is nearest to the particle.
+double distance(const Contact& contact) {
+    const double beyond = std::max({0.0, -contact.before(), -contact.after()});
+    return beyond > 0 ? std::hypot(contact.distance, beyond) : contact.distance;
+}
+
+double nearest_distance(const std::vector<Contact>& contacts) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Contact& contact : contacts) {
+        least = std::min(least, distance(contact));
+    }
+    return least;
+}
+
 /// The part of a particle's shift that keeps it off the walls: -0.2 (0.3 dx - d1)+ n; before a
 /// corner that juts out, where no wall has its foot point, off the corner likewise. (Without that,
 /// what slides along a body's side goes round its corner as close as it likes, and into it.)
@@ -104,14 +118,10 @@ Vec2 push_off(const std::vector<Contact>& contacts, double spacing) {
         if (contact.on_wall()) {
             push -= wall_push(contact.distance, spacing) * contact.normal;
             to_wall = std::min(to_wall, contact.distance);
-            continue;
-        }
-        const double beyond = std::max(-contact.before(), -contact.after());
-        const double distance = std::hypot(contact.distance, beyond);
-        if (distance < to_corner) {
-            to_corner = distance;
-            corner = contact.distance * contact.normal
-                     + (contact.before() < 0 ? beyond : -beyond) * contact.tangent;
+        } else if (distance(contact) < to_corner) {
+            const double along = contact.before() < 0 ? -contact.before() : contact.after();
+            to_corner = distance(contact);
+            corner = contact.distance * contact.normal + along * contact.tangent;
         }
     }
     if (to_corner < to_wall) {
@@ -459,7 +469,8 @@ void Evaluation::beside_walls(std::size_t a,
                               sum_w,
                               L_velocity * sum_w + L_S,
                               scene.input.spacing),
-                     {following(-nu * own[0], step), following(-nu * own[1], step)}});
+                     {following(-nu * own[0], step), following(-nu * own[1], step)},
+                     nearest_distance(work.contacts)});
     shift[a] = shift_vector(sum_w + w.C,
                             push_off(work.contacts, scene.input.spacing),
                             scene.input.shift_factor,

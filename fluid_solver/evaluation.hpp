@@ -37,6 +37,7 @@ struct WallTerms {
     double value = 0;      ///< sum v_wall . L S
     float softness = 1;    ///< the share of c^2 that the particle's own stiffness allows
     Friction friction;
+    double distance = 0; ///< m, of the nearest point of any wall
 };
 
 /// A particle in the layer next to a wall from which flux and traction are taken.

@@ -341,11 +341,18 @@ void Fluid::Implementation::put_interface() {
 }
 
 void Fluid::Implementation::move(double dt, bool with_shift) {
-    for_particles(particles.size(), config.threads, [&](std::size_t a) {
-        const Vec2 gone = way(a, dt, with_shift);
-        particles.x[a] += gone.x;
-        particles.y[a] += gone.y;
-    });
+    farthest_.resize(chunks_of(particles.size()));
+    for_chunks(
+        particles.size(), config.threads, [&](std::size_t c, std::size_t first, std::size_t last) {
+            double square = 0;
+            for (std::size_t a = first; a < last; ++a) {
+                const Vec2 gone = way(a, dt, with_shift);
+                particles.x[a] += gone.x;
+                particles.y[a] += gone.y;
+                square = std::max(square, dot(gone, gone));
+            }
+            farthest_[c] = std::sqrt(square);
+        });
     wrap();
 }
 

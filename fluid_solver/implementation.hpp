@@ -204,10 +204,11 @@ class Fluid::Implementation {
         Vec2 impulse;
     };
     Mark mark_;
-    Ledger totals_;          ///< what accumulates: exchanges, closure, wall hits
-    std::vector<Held> held_; ///< by chunk
-    bool evaluated_ = false; ///< the evaluation is of the particles in their present order
-    double wall_way_ = 0;    ///< m, of the interface in the half step before
+    Ledger totals_;                ///< what accumulates: exchanges, closure, wall hits
+    std::vector<Held> held_;       ///< by chunk
+    bool evaluated_ = false;       ///< the evaluation is of the particles in their present order
+    std::vector<double> farthest_; ///< m, by chunk: the longest way of the last half step
+    double nearer_before_ = 0;     ///< m: what the half step before can have brought together
     /// Of the particles of a chunk.
     struct Extremes {
         double speed2 = 0, lowest = 1e300, highest = -1e300;
