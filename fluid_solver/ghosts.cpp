@@ -294,22 +294,28 @@ void Ghosts::add_direct(const Boundary& boundary,
                 give_away(contact, other, y, s, share);
             }
         }
-        Row row;
+        double m0 = 0, m1 = 0, m2 = 0, m3 = 0;
+#pragma omp simd reduction(+ : m0, m1, m2, m3)
         for (std::size_t i = 0; i < most_columns; ++i) {
-            const double w = share[i] * VF[i];
-            row.m0 += w;
-            row.m1 += w * s[i];
-            row.m2 += w * s[i] * s[i];
-            row.m3 += w * s[i] * s[i] * s[i];
-            if (!linear && w != 0) {
-                const Lanes value = boundary.at(face, contact.foot + g * s[i]).value;
-                row.value += w * value;
-                row.value_s += w * s[i] * value;
-            }
+            const double w = share[i] * VF[i], w_s = w * s[i], w_ss = w_s * s[i];
+            m0 += w;
+            m1 += w_s;
+            m2 += w_ss;
+            m3 += w_ss * s[i];
         }
+        Row row{m0, m1, m2, m3, {}, {}};
         if (linear) {
             row.value = row.m0 * at_foot + g * row.m1 * slope;
             row.value_s = row.m1 * at_foot + g * row.m2 * slope;
+        } else {
+            for (std::size_t i = 0; i < most_columns; ++i) {
+                const double w = share[i] * VF[i];
+                if (w != 0) {
+                    const Lanes value = boundary.at(face, contact.foot + g * s[i]).value;
+                    row.value += w * value;
+                    row.value_s += w * s[i] * value;
+                }
+            }
         }
         const double q = 1 + d2 / least;
         in_frame.add(row, q, y, d1);
