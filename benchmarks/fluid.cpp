@@ -200,7 +200,10 @@ void ClosedTemperature(benchmark::State& state) {
     Square& s = square(state);
     Closure closure(1, 1);
     for (auto _ : state) {
-        closure.advance_temperature(s.particles, s.evaluation, 1e-9, {0});
+        closure.balance(s.particles, s.evaluation, 1e-9, {0});
+        for (std::size_t a = 0; a < s.particles.size(); ++a) {
+            closure.advance_temperature(s.particles, s.evaluation, 1e-9, a);
+        }
     }
     report(state, s.particles.size());
 }

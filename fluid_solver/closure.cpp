@@ -1,22 +1,11 @@
 #include "fluid_solver/closure.hpp"
 
-#include <cmath>
-
 namespace duet::fluid {
 
-namespace {
-
-double gained_by_shift(const Evaluation& evaluation, std::size_t a) {
-    const Vec2 dr = evaluation.shift[a];
-    return dr.x * evaluation.slope_x[a].T + dr.y * evaluation.slope_y[a].T;
-}
-
-} // namespace
-
-ClosureParts Closure::advance_temperature(Particles& particles,
-                                          const Evaluation& evaluation,
-                                          double step,
-                                          const std::vector<double>& passed) {
+ClosureParts Closure::balance(const Particles& particles,
+                              const Evaluation& evaluation,
+                              double step,
+                              const std::vector<double>& passed) {
     const std::size_t n = particles.size();
     sums_.assign(chunks_of(n) * compartments_, {});
     for_chunks(n, threads_, [&](std::size_t c, std::size_t first, std::size_t last) {
@@ -63,16 +52,6 @@ ClosureParts Closure::advance_temperature(Particles& particles,
         parts.conduction_abs += std::abs(conduction);
         parts.shift_abs += std::abs(total.shifted);
     }
-
-    for_particles(n, threads_, [&](std::size_t a) {
-        const Share& share = shares_[particles.compartment[a]];
-        const double gain = gained_by_shift(evaluation, a);
-        const double weight = std::abs(evaluation.heating[a]);
-        particles.rate[a].T = recent(particles.rate[a].T, evaluation.heating[a]);
-        particles.fields[a].T += step * evaluation.heating[a] + gain + share.all * weight
-                                 + (evaluation.near_heated[a] ? share.heated * weight : 0)
-                                 + share.shift * std::abs(gain) + share.even;
-    });
     return parts;
 }
 

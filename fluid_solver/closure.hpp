@@ -6,6 +6,7 @@
 #include "fluid_solver/evaluation.hpp"
 #include "fluid_solver/particles.hpp"
 
+#include <cmath>
 #include <vector>
 
 namespace duet::fluid {
@@ -22,16 +23,30 @@ class Closure {
     Closure(std::size_t compartments, int threads)
         : compartments_(compartments), threads_(threads) {}
 
-    /// T += step dT/dt + dr.grad T, both closed: in each compartment the sum of T over the
-    /// particles grows by `passed` (kelvin times particles) to rounding.
+    /// Finds what closes T += step dT/dt + dr.grad T, so that in each compartment the sum of T over
+    /// the particles grows by `passed` (kelvin times particles) to rounding:
     ///  (i) passed - sum step dT/dt goes to the particles within the support of heated walls,
     ///      weighted by |dT/dt|;
     /// (ii) -sum dr.grad T goes to all, weighted by |dr.grad T|.
     /// Where all weights vanish a part is spread evenly.
-    ClosureParts advance_temperature(Particles& particles,
-                                     const Evaluation& evaluation,
-                                     double step,
-                                     const std::vector<double>& passed);
+    ClosureParts balance(const Particles& particles,
+                         const Evaluation& evaluation,
+                         double step,
+                         const std::vector<double>& passed);
+
+    /// Advances the temperature of the particle a, after balance().
+    void advance_temperature(Particles& particles,
+                             const Evaluation& evaluation,
+                             double step,
+                             std::size_t a) const {
+        const Share& share = shares_[particles.compartment[a]];
+        const double heating = evaluation.heating[a], weight = std::abs(heating);
+        const double gain = gained_by_shift(evaluation, a);
+        particles.rate[a].T = recent(particles.rate[a].T, heating);
+        particles.fields[a].T += step * heating + gain + share.all * weight
+                                 + (evaluation.near_heated[a] ? share.heated * weight : 0)
+                                 + share.shift * std::abs(gain) + share.even;
+    }
 
   private:
     /// Sums over one chunk or compartment.
@@ -44,6 +59,11 @@ class Closure {
     struct Share {
         double heated = 0, all = 0, shift = 0, even = 0;
     };
+
+    static double gained_by_shift(const Evaluation& evaluation, std::size_t a) {
+        const Vec2 dr = evaluation.shift[a];
+        return dr.x * evaluation.slope_x[a].T + dr.y * evaluation.slope_y[a].T;
+    }
 
     std::size_t compartments_;
     int threads_;

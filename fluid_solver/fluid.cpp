@@ -263,7 +263,10 @@ void Fluid::Implementation::conduct(double dt, double elapsed, const Motion& mot
         const Stamp stamp(phase_seconds_[walls_and_closure]);
         particles.laplacian.swap(evaluation_.laplacian);
         book(dt);
-        advance_temperature(dt);
+        balance_heat(dt);
+        for_particles(particles.size(), config.threads, [&](std::size_t a) {
+            closure_.advance_temperature(particles, evaluation_, dt, a);
+        });
     }
     place_interface(elapsed + dt, motion);
     const Stamp stamp(phase_seconds_[moving]);
@@ -418,14 +421,13 @@ void Fluid::Implementation::accelerate(double dt) {
     totals_.viscous_loss -= mass * booked.viscous_work;
 }
 
-/// Advances T and corrects it for the shift, so that it gains what has passed.
-void Fluid::Implementation::advance_temperature(double dt) {
+/// Closes the heat that has passed.
+void Fluid::Implementation::balance_heat(double dt) {
     const double capacity = config.density * config.heat_capacity * volume;
     for (double& heat : passed_heat_) {
         heat /= capacity;
     }
-    const ClosureParts parts =
-        closure_.advance_temperature(particles, evaluation_, dt, passed_heat_);
+    const ClosureParts parts = closure_.balance(particles, evaluation_, dt, passed_heat_);
     totals_.closure_conduction += capacity * parts.conduction;
     totals_.closure_conduction_abs += capacity * parts.conduction_abs;
     totals_.closure_shift += capacity * parts.shift;
@@ -435,9 +437,12 @@ void Fluid::Implementation::advance_temperature(double dt) {
 /// Advances T, and corrects all fields for the shift: f += dr . grad f.
 void Fluid::Implementation::correct_fields(double dt) {
     if (heat_) {
-        advance_temperature(dt);
+        balance_heat(dt);
     }
     for_particles(particles.size(), config.threads, [&](std::size_t a) {
+        if (heat_) {
+            closure_.advance_temperature(particles, evaluation_, dt, a);
+        }
         const Vec2 dr = evaluation_.shift[a];
         const Slope &gx = evaluation_.slope_x[a], &gy = evaluation_.slope_y[a];
         Fields& f = particles.fields[a];

@@ -99,7 +99,7 @@ class Fluid::Implementation {
     void finish_step(double dt, double elapsed, const Motion& motion);
     void take_body_force(double now);
     void accelerate(double dt);
-    void advance_temperature(double dt);
+    void balance_heat(double dt);
     void correct_fields(double dt);
     void start();
 

@@ -7,14 +7,14 @@
 
 namespace duet::fluid {
 
-/// In a closed cavity the pressure is defined up to a constant: takes the mean out of each
-/// compartment, and finds the levels of the hydrostatic part.
+/// In a closed cavity the pressure is defined up to a constant: finds its mean in each compartment,
+/// which measure() takes out, and the levels of the hydrostatic part.
 void Fluid::Implementation::level() {
+    const std::size_t n = particles.size();
+    means_.assign(chunks_of(n) * compartments, Lanes{});
     if (config.pressure_level == PressureLevel::free) {
         return;
     }
-    const std::size_t n = particles.size();
-    means_.assign(chunks_of(n) * compartments, Lanes{});
     for_chunks(n, config.threads, [&](std::size_t c, std::size_t first, std::size_t last) {
         for (std::size_t a = first; a < last; ++a) {
             const Fields& f = particles.fields[a];
@@ -35,18 +35,17 @@ void Fluid::Implementation::level() {
                 {means_[k][2], means_[k][3]}};
         }
     }
-    for_particles(n, config.threads, [&](std::size_t a) {
-        particles.fields[a].p -= means_[particles.compartment[a]][0];
-    });
 }
 
+/// Takes the mean that level() has found out of the pressure, and finds the extremes.
 void Fluid::Implementation::measure() {
     const std::size_t n = particles.size();
     extremes_.resize(chunks_of(n));
     for_chunks(n, config.threads, [&](std::size_t c, std::size_t first, std::size_t last) {
         Extremes e;
         for (std::size_t a = first; a < last; ++a) {
-            const Fields& f = particles.fields[a];
+            Fields& f = particles.fields[a];
+            f.p -= means_[particles.compartment[a]][0];
             e.speed2 = std::max(e.speed2, f.u * f.u + f.v * f.v);
             e.lowest = std::min(e.lowest, f.p);
             e.highest = std::max(e.highest, f.p);
@@ -57,6 +56,7 @@ void Fluid::Implementation::measure() {
         }
         extremes_[c] = e;
     });
+    means_.assign(compartments, Lanes{});
     Extremes e = extremes_[0];
     for (std::size_t c = 1; c < extremes_.size(); ++c) {
         const Extremes& other = extremes_[c];
