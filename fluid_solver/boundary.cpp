@@ -350,6 +350,7 @@ std::uint32_t Boundary::cell_at(const Segment& segment, double along) const {
 
 Boundary::Nearest Boundary::nearest(Vec2 x) const {
     Nearest best;
+    best.distance = support_;
     double least = support_ * support_;
     const std::size_t cell = grid_.index(x);
     for (std::uint32_t c = candidate_start_[cell]; c < candidate_start_[cell + 1]; ++c) {

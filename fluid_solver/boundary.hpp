@@ -118,7 +118,7 @@ class Boundary {
     std::uint32_t cell_at(const Segment& segment, double along) const;
 
     /// Signed distance of x from the nearest face within the support (positive in the fluid), the
-    /// face and the nearest point on it; `face` is null if none is in range.
+    /// face and the nearest point on it; null, at a support's distance, if none is in range.
     struct Nearest {
         const Face* face = nullptr;
         double distance = 0;

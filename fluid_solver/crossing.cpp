@@ -117,8 +117,7 @@ void Fluid::Implementation::hold_off(std::size_t a,
     const Vec2 x = particles.position(a);
     const Boundary::Nearest wall = boundary_.nearest(x);
     const Vec2 gone = way(a, half.length, half.with_shift);
-    if (wall.face == nullptr
-        || wall.distance > std::max(norm(gone) + wall_way, close * config.spacing)) {
+    if (wall.distance > std::max(norm(gone) + wall_way, close * config.spacing)) {
         return; // it cannot have been on the other side
     }
     auto crossing = boundary_.first_crossing(x - gone, x, interface_before_);
@@ -126,8 +125,8 @@ void Fluid::Implementation::hold_off(std::size_t a,
         slow_approach(a, half, wall);
         return;
     }
-    const WallPoint foot = boundary_.at(*wall.face, wall.foot);
     if (!crossing) { // it was behind the wall before
+        const WallPoint foot = boundary_.at(*wall.face, wall.foot);
         const auto segment = static_cast<std::uint32_t>(foot.segment - boundary_.segments().data());
         crossing = {segment, foot.along, -wall.distance, boundary_.image_shift(*wall.face)};
     }

@@ -152,6 +152,29 @@ TEST(FluidBudget, FluxOfALinearTemperatureIsExact) {
     EXPECT_NEAR(fluid.at({0.23, 0.31}).temperature, 0.46, exact);
 }
 
+/// A probe away from walls: a quadratic and its slope, to rounding.
+TEST(FluidBudget, AProbeOfAQuadraticIsExact) {
+    Config config = closed({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, 0.05, false);
+    config.disorder = 0.15;
+    Fluid fluid(config);
+    const auto field = [](Vec2 p) {
+        const double x = p.x, y = p.y;
+        return Values{3 + 2 * x - y + 5 * x * x - 4 * x * y + 7 * y * y,
+                      {1 - x * x + x * y, 2 + 3 * y * y - x},
+                      0,
+                      {2 + 10 * x - 4 * y, -1 - 4 * x + 14 * y}};
+    };
+    fluid.set_fields(field);
+    for (const Vec2 place : {Vec2{0.5, 0.5}, Vec2{0.31, 0.67}, Vec2{0.72, 0.28}}) {
+        const Values found = fluid.at(place), exact = field(place);
+        EXPECT_NEAR(found.temperature, exact.temperature, 1e-12);
+        EXPECT_NEAR(found.velocity.x, exact.velocity.x, 1e-12);
+        EXPECT_NEAR(found.velocity.y, exact.velocity.y, 1e-12);
+        EXPECT_NEAR(found.temperature_slope.x, exact.temperature_slope.x, 1e-10);
+        EXPECT_NEAR(found.temperature_slope.y, exact.temperature_slope.y, 1e-10);
+    }
+}
+
 TEST(FluidBudget, EachCompartmentHasItsOwnPressureAndHeat) {
     // A band from bottom to top warms the fluid on its left and cools the one on its right.
     Config config = closed({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, 0.05, false);

@@ -146,5 +146,27 @@ TEST(FluidCrossing, WhatAWallPassesEndsTheRun) {
     }
 }
 
+/// What one half step throws through a wall from so far away that no wall was in its sight before
+/// is found there all the same.
+TEST(FluidCrossing, WhatIsThrownThroughAWallFromAfarEndsTheRun) {
+    Config config = closed(square, dx, false);
+    config.kinematic_viscosity = config.conductivity = 0;
+    config.sound_speed = 0.05;
+    config.body_force.x = Function(
+        [](double x, double y, double) {
+            return std::abs(x - 0.525) < 0.01 && std::abs(y - 0.525) < 0.01 ? 1.0 : 0.0;
+        },
+        false);
+    Fluid fluid(config);
+    // One particle goes t^2/2, from the middle through the wall.
+    try {
+        fluid.advance(1.2);
+        FAIL() << "it went through the wall";
+    } catch (const Diverged& error) {
+        EXPECT_NE(std::string(error.what()).find("a fluid particle has crossed"), std::string::npos)
+            << error.what();
+    }
+}
+
 } // namespace
 } // namespace duet::fluid::test

@@ -2,8 +2,11 @@
 
 #include "fluid_support.hpp"
 
+#include "fluid_solver/chunks.hpp"
+
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 namespace duet::fluid::test {
@@ -96,10 +99,21 @@ TEST(FluidNeighbours, TooManyAreRefused) {
     EXPECT_FALSE(find(many, grid, 0.1F, 0, found));
 }
 
-TEST(FluidNeighbours, SortKeepsTheOrderWithinACell) {
+/// With a thread for each range, and with more threads than ranges.
+class FluidSort : public testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Threads, FluidSort, testing::Values(1, 2, 3, 20));
+
+TEST_P(FluidSort, KeepsTheOrderWithinACell) {
     const CellGrid grid({0, 0}, {1, 1}, 0.25);
-    Particles particles = random_cloud(300);
-    particles.sort(grid);
+    const Particles given = random_cloud(300);
+    Particles particles = given;
+    particles.sort(grid, GetParam());
+    std::set<std::uint32_t> identities(particles.identity.begin(), particles.identity.end());
+    EXPECT_EQ(identities.size(), given.size());
+    for (std::size_t a = 0; a < particles.size(); ++a) {
+        EXPECT_EQ(particles.x[a], given.x[particles.identity[a]]);
+        EXPECT_EQ(particles.y[a], given.y[particles.identity[a]]);
+    }
     for (std::size_t a = 1; a < particles.size(); ++a) {
         const std::size_t before = grid.index(particles.position(a - 1));
         const std::size_t cell = grid.index(particles.position(a));
@@ -112,6 +126,21 @@ TEST(FluidNeighbours, SortKeepsTheOrderWithinACell) {
         for (std::uint32_t a = particles.cell_start()[c]; a < particles.cell_start()[c + 1]; ++a) {
             EXPECT_EQ(grid.index(particles.position(a)), c);
         }
+    }
+}
+
+/// Each chunk once, in pieces that end where the particles end, whoever has it.
+TEST_P(FluidSort, EveryChunkIsVisitedOnce) {
+    for (const std::size_t n : {0, 1, 128, 129, 300, 128 * 37}) {
+        std::vector<int> visits(n, 0);
+        for_chunks(n, GetParam(), [&](std::size_t c, std::size_t first, std::size_t last) {
+            EXPECT_EQ(first, c * chunk_size);
+            EXPECT_LE(last - first, chunk_size);
+            for (std::size_t a = first; a < last; ++a) {
+                ++visits[a];
+            }
+        });
+        EXPECT_EQ(std::count(visits.begin(), visits.end(), 1), static_cast<long>(n)) << n;
     }
 }
 
