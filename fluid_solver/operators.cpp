@@ -11,9 +11,10 @@ Moments weigh(const Kernel& kernel,
               DirectionWeights& directions) {
     const auto inverse = static_cast<float>(1 / kernel.support());
     const float scale = volume * static_cast<float>(kernel.slope_over_r(0));
-    Eight wx{}, wy{}, wxx{}, wxy{}, wyy{}, xxx{}, xxy{}, xyy{}, yyy{};
-    Eight sxxx{}, sxxy{}, qxxxx{}, qxxxy{};
-    for (std::size_t block = 0; block < near.eights(); ++block) {
+    const std::size_t blocks = near.eights();
+    // In two loops, each with as many sums as there are registers for.
+    Eight wx{}, wy{}, sxxx{}, sxxy{}, qxxxx{}, qxxxy{};
+    for (std::size_t block = 0; block < blocks; ++block) {
         const Eight x = load_eight(&near.x[block * eight]), y = load_eight(&near.y[block * eight]);
         const Eight r2 = x * x + y * y, per_r = inverse_root(r2), ratio = per_r * per_r;
         const Eight s = 1 - r2 * per_r * inverse;
@@ -24,14 +25,23 @@ Moments weigh(const Kernel& kernel,
         store(out.y, Fy);
         store(out.F, F);
         std::memcpy(out.index, &near.index[block * eight], sizeof out.index);
-        const Eight xx = x * x, xy = x * y;
-        const Eight Fxx = Fx * x, Fxy = Fx * y, Fyy = Fy * y;
-        const Eight Gxx = Fxx * ratio, Gxy = Fxy * ratio, Gyy = Fyy * ratio;
+        const Eight Gx = Fx * ratio, Gy = Fy * ratio;
+        const Eight Gxx = Gx * x, Gxy = Gx * y;
         store(&directions.xx[block * eight], 2 * Gxx);
         store(&directions.xy[block * eight], 4 * Gxy);
-        store(&directions.yy[block * eight], 2 * Gyy);
+        store(&directions.yy[block * eight], 2 * Gy * y);
         wx += Fx;
         wy += Fy;
+        sxxx += Gxx * x;
+        sxxy += Gxx * y;
+        qxxxx += Gxx * (x * x);
+        qxxxy += Gxx * (x * y);
+    }
+    Eight wxx{}, wxy{}, wyy{}, xxx{}, xxy{}, xyy{}, yyy{};
+    for (std::size_t block = 0; block < blocks; ++block) {
+        const Eight x = load_eight(&near.x[block * eight]), y = load_eight(&near.y[block * eight]);
+        const Eight Fxx = load_eight(pairs[block].x) * x, Fy = load_eight(pairs[block].y);
+        const Eight Fxy = Fy * x, Fyy = Fy * y;
         wxx += Fxx;
         wxy += Fxy;
         wyy += Fyy;
@@ -39,10 +49,6 @@ Moments weigh(const Kernel& kernel,
         xxy += Fxx * y;
         xyy += Fxy * y;
         yyy += Fyy * y;
-        sxxx += Gxx * x;
-        sxxy += Gxx * y;
-        qxxxx += Gxx * xx;
-        qxxxy += Gxx * xy;
     }
     const Eight sums[2] = {lane_sums(wx, wy, wxx, wxy, wyy, xxx, xxy, xyy),
                            lane_sums(yyy, sxxx, sxxy, qxxxx, qxxxy, Eight{}, Eight{}, Eight{})};
