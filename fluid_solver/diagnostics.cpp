@@ -50,38 +50,6 @@ void Fluid::Implementation::mark() {
 
 namespace {
 
-/// Sums over particles for a weighted least-squares fit of a quadratic to each lane of their
-/// fields, by the monomials x^i y^j of their places.
-struct QuadraticSums {
-    static constexpr std::size_t terms = 6; ///< 1, x, y, xx, xy, yy
-    /// Which of `moments` is the product of two terms: in rising order, x before y.
-    static constexpr std::size_t product[terms][terms] = {{0, 1, 2, 3, 4, 5},
-                                                          {1, 3, 4, 6, 7, 8},
-                                                          {2, 4, 5, 7, 8, 9},
-                                                          {3, 6, 7, 10, 11, 12},
-                                                          {4, 7, 8, 11, 12, 13},
-                                                          {5, 8, 9, 12, 13, 14}};
-    std::array<double, 15> moments{};
-    std::array<Lanes, terms> right{};
-    int points = 0;
-
-    void add(double x, double y, double weight, const Lanes& fields) {
-        const double xx = x * x, xy = x * y, yy = y * y;
-        const double wxx = weight * xx, wxy = weight * xy, wyy = weight * yy;
-        const double row[] = {weight, weight * x, weight * y, wxx, wxy, wyy};
-        for (std::size_t k = 0; k < terms; ++k) {
-            moments[k] += row[k];
-            right[k] += row[k] * fields;
-        }
-        const double higher[] = {
-            wxx * x, wxx * y, wyy * x, wyy * y, wxx * xx, wxx * xy, wxx * yy, wxy * yy, wyy * yy};
-        for (std::size_t k = 0; k < 9; ++k) {
-            moments[terms + k] += higher[k];
-        }
-        ++points;
-    }
-};
-
 /// Weighted least squares of some fields at once for a quadratic (six terms, scaled by the support)
 /// or, with too few points, a plane or a constant about the point asked for.
 template <int fields>
@@ -91,18 +59,8 @@ class LocalFit {
     using Normal = Eigen::Matrix<double, 6, 6>;
     using Right = Eigen::Matrix<double, 6, fields>;
 
-    /// Of the fields from `first` on.
-    explicit LocalFit(const QuadraticSums& sums, std::size_t first = 0) : points_(sums.points) {
-        for (int i = 0; i < 6; ++i) {
-            for (int j = 0; j < 6; ++j) {
-                normal_(i, j) = sums.moments[QuadraticSums::product[i][j]];
-            }
-            for (int f = 0; f < fields; ++f) {
-                right_(i, f) =
-                    sums.right[static_cast<std::size_t>(i)][first + static_cast<std::size_t>(f)];
-            }
-        }
-    }
+    LocalFit(const Normal& normal, const Right& right, int points)
+        : normal_(normal), right_(right), points_(points) {}
 
     void add(const Row& row, double weight, double value) {
         normal_ += weight * row * row.transpose();
@@ -168,7 +126,10 @@ Values Fluid::Implementation::at(Vec2 point) const {
         const double x = r.x / R, y = r.y / R;
         return LocalFit<1>::Row{1, x, y, x * x, x * y, y * y};
     };
-    QuadraticSums sums; // the particles count alike for u, v, p and T
+    // The particles count alike for u, v, p and T.
+    Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
+    Eigen::Matrix<double, 6, 4> right = Eigen::Matrix<double, 6, 4>::Zero();
+    int points = 0;
     // Since they were sorted the particles have moved by half a step and the shift: less than half
     // a spacing.
     grid_.for_cells_within(point, R + 0.5 * config.spacing, [&](std::size_t cell) {
@@ -179,15 +140,19 @@ Values Fluid::Implementation::at(Vec2 point) const {
                 const Fields& f = particles.fields[a];
                 const double head =
                     hydrostatics_.pressure(particles.position(a), particles.compartment[a]);
-                sums.add(r.x / R, r.y / R, kernel.value(norm(r)), Lanes{f.u, f.v, f.p + head, f.T});
+                const LocalFit<1>::Row one = terms(r), weighted = kernel.value(norm(r)) * one;
+                normal += weighted * one.transpose();
+                right += weighted * Eigen::RowVector4d(f.u, f.v, f.p + head, f.T);
+                ++points;
             }
         }
     });
     if (contacts.empty()) {
-        const auto f = LocalFit<4>(sums).result();
+        const auto f = LocalFit<4>(normal, right, points).result();
         return {f(0, 3), {f(0, 0), f(0, 1)}, f(0, 2), (1 / R) * Vec2{f(1, 3), f(2, 3)}};
     }
-    LocalFit<1> u(sums, 0), v(sums, 1), p(sums, 2), T(sums, 3);
+    LocalFit<1> u(normal, right.col(0), points), v(normal, right.col(1), points),
+        p(normal, right.col(2), points), T(normal, right.col(3), points);
     // Walls contribute what is known of them, at points half a spacing apart.
     for (const Contact& contact : contacts) {
         for (int i = -5; i <= 5; ++i) {
