@@ -118,7 +118,8 @@ class Boundary {
     std::uint32_t cell_at(const Segment& segment, double along) const;
 
     /// Signed distance of x from the nearest face within the support (positive in the fluid), the
-    /// face and the nearest point on it; null, at a support's distance, if none is in range.
+    /// face and the nearest point on it. If none is in range, `face` is null and the distance is
+    /// the support.
     struct Nearest {
         const Face* face = nullptr;
         double distance = 0;

@@ -19,9 +19,9 @@ inline std::size_t chunks_of(std::size_t n) {
 }
 
 /// The equal parts that a pass falls into, one for each thread; further threads help with these.
-constexpr std::size_t most_stretches = 16;
+constexpr int most_stretches = 16;
 inline std::size_t stretches_of(int threads) {
-    return std::clamp(static_cast<std::size_t>(threads), std::size_t{1}, most_stretches);
+    return static_cast<std::size_t>(std::clamp(threads, 1, most_stretches));
 }
 
 /// Chunks that are handed out one by one, in their order, to whoever asks.
@@ -48,7 +48,8 @@ void for_chunks(std::size_t n, int threads, const Body& body) {
         const auto own = static_cast<std::size_t>(omp_get_thread_num());
         for (std::size_t s = 0; s < count; ++s) {
             Stretch& stretch = stretches[(own + s) % count];
-            for (std::size_t c = stretch.next++; c < stretch.end; c = stretch.next++) {
+            const auto take = [&] { return stretch.next.fetch_add(1, std::memory_order_relaxed); };
+            for (std::size_t c = take(); c < stretch.end; c = take()) {
                 body(c, c * chunk_size, std::min(n, (c + 1) * chunk_size));
             }
         }

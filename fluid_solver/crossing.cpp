@@ -80,11 +80,12 @@ void Fluid::Implementation::hold_off_walls(const HalfStep& half) {
     for (std::size_t i = 0; i < interface_before_.size(); ++i) {
         wall_way = std::max(wall_way, norm(interface_position_[i] - interface_before_[i]));
     }
-    // No particle and no wall have come nearer than by the ways of those that went farthest. So the
-    // distances of the evaluation, half a step or a whole one ago, tell what needs no look.
+    // A particle and a wall approach each other by no more than the longest way of any particle and
+    // the longest of any wall. So their distances when the operators were evaluated, half a step or
+    // a whole one ago, tell which particles cannot have come near.
     const double nearer = wall_way + *std::max_element(farthest_.begin(), farthest_.end());
     const double since = half.with_shift ? nearer : nearer + nearer_before_;
-    const double reach = since + std::max(nearer, close * config.spacing);
+    const double reach = (1 + 1e-9) * (since + std::max(nearer, close * config.spacing));
     const bool known = evaluated_ && reach < evaluation_.kernel().support();
     nearer_before_ = nearer;
     held_.resize(chunks_of(particles.size()));

@@ -55,7 +55,7 @@ inline void store(float* to, const Eight& r) {
     std::memcpy(to, &r, sizeof r);
 }
 
-/// 1/sqrt(x) for positive x, to 4e-7 of it.
+/// 1/sqrt(x) to 4e-7 of it, for normal x > 0.
 inline Eight inverse_root(const Eight& x) {
 #ifdef __AVX__
     const Eight estimate = _mm256_rsqrt_ps(x); // to 4e-4, and a step of Newton's method

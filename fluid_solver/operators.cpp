@@ -1,6 +1,7 @@
 #include "fluid_solver/operators.hpp"
 
 #include <cmath>
+#include <cstddef>
 
 namespace duet::fluid {
 
@@ -121,7 +122,8 @@ void OperatorBatch::solve() {
             Eight rows[eight];
             for (std::size_t k = 0; k < eight; ++k) {
                 std::memcpy(&rows[k],
-                            reinterpret_cast<const float*>(&rows_[i + k]) + half * eight,
+                            reinterpret_cast<const std::byte*>(&rows_[i + k])
+                                + half * sizeof rows[k],
                             sizeof rows[k]);
             }
             transpose(rows);

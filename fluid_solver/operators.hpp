@@ -22,7 +22,8 @@ struct alignas(32) PairBlock {
     std::uint32_t index[eight];
 };
 
-/// Sums over the fluid neighbours, x = x_ab. (What is missing follows from xx + yy = r^2.)
+/// Sums over the fluid neighbours, x = x_ab. (What is missing follows from xx + yy = r^2.) Two
+/// registers, three lanes of them unused.
 struct alignas(2 * sizeof(Eight)) Moments {
     float wx = 0, wy = 0;                     ///< sum w
     float wxx = 0, wxy = 0, wyy = 0;          ///< sum w x^T

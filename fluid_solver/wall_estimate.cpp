@@ -4,6 +4,12 @@
 
 namespace duet::fluid {
 
+namespace {
+
+constexpr double rounding = 1e-9; ///< of sums of lengths
+
+} // namespace
+
 void WallEstimate::Sums::add(double share, double, const Sums& other) {
     if (!other.empty()) {
         compartment = other.compartment;
@@ -51,7 +57,8 @@ double WallEstimate::turn_of_wall(const Boundary& boundary, std::uint32_t cell) 
     };
     const auto end = [&](std::uint32_t WallCell::*next) {
         std::uint32_t c = cell;
-        for (double way = 0; way < spacing_ && cells[c].*next != none && cells[c].*next != cell;) {
+        for (double way = 0;
+             way < spacing_ * (1 - rounding) && cells[c].*next != none && cells[c].*next != cell;) {
             way += cells[c].length;
             c = cells[c].*next;
         }
@@ -83,13 +90,14 @@ double known_slope(const Boundary& boundary, const WallCell& cell) {
 /// most corners hold no flow, and where one slides into another (a lid) u_t,n has no bound.
 double WallEstimate::bend(const Boundary& boundary, std::uint32_t cell) const {
     const auto& cells = boundary.cells();
+    const double reach = 2 * spacing_ * (1 - rounding); // four cells of half a spacing are enough
     struct End {
         std::uint32_t cell;
         double way;
     };
     const auto end = [&](std::uint32_t WallCell::*next) {
         End e{cell, 0};
-        while (e.way < 2 * spacing_) {
+        while (e.way < reach) {
             const std::uint32_t c = cells[e.cell].*next;
             if (c == none || c == cell || !slopes_[c]) {
                 break;
@@ -100,7 +108,7 @@ double WallEstimate::bend(const Boundary& boundary, std::uint32_t cell) const {
         return e;
     };
     const End before = end(&WallCell::before), after = end(&WallCell::after);
-    if (before.way < 2 * spacing_ || after.way < 2 * spacing_) {
+    if (before.way < reach || after.way < reach) {
         return 0;
     }
     return (*slopes_[before.cell] - *slopes_[after.cell]) / (before.way + after.way);

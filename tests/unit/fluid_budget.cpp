@@ -152,6 +152,27 @@ TEST(FluidBudget, FluxOfALinearTemperatureIsExact) {
     EXPECT_NEAR(fluid.at({0.23, 0.31}).temperature, 0.46, exact);
 }
 
+/// A lid on a cavity of some micrometres does what it does on one of a metre: nothing is compared
+/// with a length of ours, and no sum of lengths with another to the last digit.
+TEST(FluidBudget, UnitsDoNotShow) {
+    const auto kinetic_energy = [](double side) {
+        Config config = closed({{0, 0}, {side, 0}, {side, side}, {0, side}}, 0.05 * side, false);
+        config.kinematic_viscosity = side / 20;
+        config.disorder = 0.1;
+        config.sound_speed = 15;
+        config.walls = {{"lid", {0, side}, {side, side}, {}, {}}};
+        config.walls[0].velocity.x = 1.0;
+        Fluid fluid(config);
+        fluid.advance(0.1 * side);
+        return fluid.ledger().kinetic_energy / (side * side);
+    };
+    const double one = kinetic_energy(1);
+    EXPECT_GT(one, 0.01);
+    for (const double side : {2e-5, 3e-3, 7e4}) {
+        EXPECT_NEAR(kinetic_energy(side), one, 1e-5 * one) << "a side of " << side << " m";
+    }
+}
+
 /// A probe away from walls: a quadratic and its slope, to rounding.
 TEST(FluidBudget, AProbeOfAQuadraticIsExact) {
     Config config = closed({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, 0.05, false);
