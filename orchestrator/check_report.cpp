@@ -17,7 +17,7 @@ namespace duet::orchestrator {
 namespace {
 
 // Rough constants of the estimate, from runs on one core of an ordinary machine.
-constexpr double particle_steps_per_second = 1.3e6; // full particle steps a CPU second
+constexpr double particle_steps_per_second = 2e6; // full particle steps a CPU second
 constexpr double node_steps_per_second = 1e8;       // heat steps of a solid's node a CPU second
 constexpr double bytes_per_particle = 1500;
 constexpr double bytes_per_node = 500;
