@@ -10,36 +10,21 @@ constexpr double rounding = 1e-9; ///< of sums of lengths
 
 } // namespace
 
-void WallEstimate::Sums::add(double share, double, const Sums& other) {
-    if (!other.empty()) {
-        compartment = other.compartment;
-    }
-    w += share * other.w;
-    rise += share * other.rise;
-    lap += share * other.lap;
-}
-
-void WallEstimate::PressureSums::add(double share, double ahead, const PressureSums& other) {
-    w += share * other.w;
-    wp += share * (other.wp + ahead * other.wp_along);
-    wp_along += share * other.wp_along;
-}
-
 template <class Of>
 Of WallEstimate::stretch(const Boundary& boundary,
                          const std::vector<Of>& sums,
                          std::uint32_t cell,
                          double half_width) {
     const auto& cells = boundary.cells();
-    Of total;
-    total.add(1, 0, sums[cell]);
+    Of total = sums[cell];
     const auto walk = [&](std::uint32_t WallCell::*next, double direction) {
         double start = 0.5 * cells[cell].length;
         for (std::uint32_t c = cells[cell].*next; c != none && c != cell && start < half_width;
              c = cells[c].*next) {
             const double length = cells[c].length;
             const double ahead = direction * (start + 0.5 * length);
-            total.add(std::min(1.0, (half_width - start) / length), ahead, sums[c]);
+            const double left = half_width - start;
+            total.add(left < length ? left / length : 1, ahead, sums[c]);
             start += length;
         }
     };
@@ -173,18 +158,18 @@ void WallEstimate::slopes(const Boundary& boundary,
             continue; // a bay too narrow to hold a particle passes nothing
         }
         const WallCell& cell = boundary.cells()[c];
-        const double bent = s.w[1] + 0.5 * cell.curvature * s.w[2];
+        const double per_bent = 1 / (s.w[1] + 0.5 * cell.curvature * s.w[2]);
         const Vec2 tangent{cell.normal.y, -cell.normal.x}; // in the direction of travel
         // What turns with the wall is not sheared: the bend is that of the rest.
         const double turning = walls_move ? s.w[1] * turn_of_wall(boundary, c) : 0;
         const double rise = dot({s.rise[0], s.rise[1]}, tangent);
-        const double shear = cell.slip ? 0 : (rise + turning) / bent;
+        const double shear = cell.slip ? 0 : (rise + turning) * per_bent;
         if (!cell.slip) {
-            slopes_[c] = (rise - dot({s.lap[0], s.lap[1]}, tangent)) / bent;
+            slopes_[c] = (rise - dot({s.lap[0], s.lap[1]}, tangent)) * per_bent;
         }
         quartics_[c] = cell.one_temperature && s.w[3] > 0 ? s.lap[3] / s.w[3] : 0;
         loads_[c].compartment = s.compartment;
-        const double slope_T = cell.heated ? (s.rise[3] - quartics_[c] / 12 * s.lap[2]) / bent
+        const double slope_T = cell.heated ? (s.rise[3] - quartics_[c] / 12 * s.lap[2]) * per_bent
                                            : known_slope(boundary, cell);
         loads_[c].heat_flux = material.conductivity * slope_T;
         loads_[c].shear = -(material.density * material.kinematic_viscosity * shear) * tangent;

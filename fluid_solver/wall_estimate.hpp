@@ -66,14 +66,23 @@ class WallEstimate {
         std::uint16_t compartment = 0;
         /// Adds a share of another cell's sums; this one's middle lies `ahead` of the other's,
         /// which matters to no slope.
-        void add(double share, double ahead, const Sums& other);
+        void add(double share, double /*ahead*/, const Sums& other) {
+            compartment = other.empty() ? compartment : other.compartment;
+            w += share * other.w;
+            rise += share * other.rise;
+            lap += share * other.lap;
+        }
         bool empty() const { return w[0] == 0; }
     };
     struct PressureSums { // likewise
         double w = 0;
         double wp = 0;       ///< sum w p_wall, each p_wall taken to the middle of the cell
         double wp_along = 0; ///< sum w dp/ds along the wall
-        void add(double share, double ahead, const PressureSums& other);
+        void add(double share, double ahead, const PressureSums& other) {
+            w += share * other.w;
+            wp += share * (other.wp + ahead * other.wp_along);
+            wp_along += share * other.wp_along;
+        }
         bool empty() const { return w == 0; }
     };
     /// Sums over the cells within half_width of the middle of `cell` along the wall, up to the next
