@@ -18,7 +18,7 @@ namespace {
 
 // Rough constants of the estimate, from runs on one core of an ordinary machine.
 constexpr double particle_steps_per_second = 2e6; // full particle steps a CPU second
-constexpr double node_steps_per_second = 1e8;       // heat steps of a solid's node a CPU second
+constexpr double node_steps_per_second = 1e8;     // heat steps of a solid's node a CPU second
 constexpr double bytes_per_particle = 1500;
 constexpr double bytes_per_node = 500;
 constexpr double bytes_of_a_process = 30e6;
