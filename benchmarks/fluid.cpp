@@ -4,6 +4,8 @@
 //
 //     build/release/bin/bench_fluid [--benchmark_filter=Search] [--benchmark_min_time=0.2]
 
+#include "fluid_solver/fluid.hpp"
+#include "benchmarks/heated_cavity.hpp"
 #include "fluid_solver/closure.hpp"
 #include "fluid_solver/pressure.hpp"
 #include "fluid_solver/wall_estimate.hpp"
@@ -208,6 +210,48 @@ void ClosedTemperature(benchmark::State& state) {
     report(state, s.particles.size());
 }
 
+/// Outer steps of a roll in a cavity, with two inner steps as long as it keeps its speed: what each
+/// physics costs, by particle and step.
+void outer_steps(benchmark::State& state, const Config& config) {
+    Fluid fluid(config);
+    const bool moves = config.kinematic_viscosity > 0;
+    fluid.set_fields([&](Vec2 x) {
+        Values values = roll(x);
+        values.velocity = moves ? values.velocity : Vec2{};
+        values.temperature = config.conductivity > 0 ? values.temperature : 0.5;
+        return values;
+    });
+    std::size_t steps = 0;
+    for (auto _ : state) {
+        steps += static_cast<std::size_t>(fluid.advance(0.75 * fluid.stable_step()));
+    }
+    report(state, fluid.size() * steps / static_cast<std::size_t>(state.iterations()));
+}
+Config cavity_of(const benchmark::State& state) {
+    Config config = heated_cavity(1e6, 1 / static_cast<double>(state.range(0)));
+    config.disorder = 0.1;
+    return config;
+}
+void StepOfHeatAlone(benchmark::State& state) {
+    Config config = cavity_of(state);
+    config.thermal_expansion = config.kinematic_viscosity = 0;
+    outer_steps(state, config);
+}
+void StepOfFlowAlone(benchmark::State& state) {
+    Config config = cavity_of(state);
+    config.thermal_expansion = config.conductivity = 0;
+    config.walls.clear();
+    outer_steps(state, config);
+}
+void StepWithoutBuoyancy(benchmark::State& state) {
+    Config config = cavity_of(state);
+    config.thermal_expansion = 0;
+    outer_steps(state, config);
+}
+void StepWithBuoyancy(benchmark::State& state) {
+    outer_steps(state, cavity_of(state));
+}
+
 // What the machine gives, by one core.
 
 /// a = b + c of 64 MB each: nanoseconds for 64 bytes, read and written.
@@ -276,6 +320,10 @@ BENCHMARK(OneInnerStep)->Arg(50)->Arg(100)->Arg(1000);
 BENCHMARK(ElevenInnerSteps)->Arg(50)->Arg(100)->Arg(1000);
 BENCHMARK(WallEstimates)->Arg(100);
 BENCHMARK(ClosedTemperature)->Arg(100);
+BENCHMARK(StepOfHeatAlone)->Arg(100)->Iterations(300);
+BENCHMARK(StepOfFlowAlone)->Arg(100)->Iterations(300);
+BENCHMARK(StepWithoutBuoyancy)->Arg(100)->Iterations(300);
+BENCHMARK(StepWithBuoyancy)->Arg(100)->Iterations(300);
 
 } // namespace
 } // namespace duet::fluid

@@ -8,11 +8,9 @@
 
 #include <sys/resource.h>
 
-#include <cmath>
 #include <cstdlib>
 #include <ctime>
 #include <iostream>
-#include <numbers>
 
 int main(int argc, char** argv) {
     using namespace duet::fluid;
@@ -24,14 +22,7 @@ int main(int argc, char** argv) {
     config.disorder = 0.1;
     config.threads = std::atoi(argv[3]);
     Fluid fluid(config);
-    fluid.set_fields([](Vec2 x) {
-        const double pi = std::numbers::pi, sx = std::sin(pi * x.x), sy = std::sin(pi * x.y);
-        Values values;
-        values.temperature = 1 - x.x;
-        values.velocity =
-            100 * Vec2{sx * sx * std::sin(2 * pi * x.y), -sy * sy * std::sin(2 * pi * x.x)};
-        return values;
-    });
+    fluid.set_fields(roll);
     const std::clock_t start = std::clock();
     int steps = 0;
     while (steps < std::atoi(argv[2])) {

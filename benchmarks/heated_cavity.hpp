@@ -4,6 +4,9 @@
 
 #include "fluid_solver/scene.hpp"
 
+#include <cmath>
+#include <numbers>
+
 namespace duet::fluid {
 
 /// A closed unit square, Pr = 0.71, lengths in L, time in L^2/alpha: the left wall at 1, the right
@@ -20,6 +23,16 @@ inline Config heated_cavity(double Ra, double spacing) {
     config.initial_temperature = config.reference_temperature = 0.5;
     config.walls = {{"hot", {0, 0}, {0, 1}, 1.0, {}}, {"cold", {1, 0}, {1, 1}, 0.0, {}}};
     return config;
+}
+
+/// A roll that fills it, at 100 alpha/L, in the temperature of conduction.
+inline Values roll(Vec2 x) {
+    const double pi = std::numbers::pi, sx = std::sin(pi * x.x), sy = std::sin(pi * x.y);
+    Values values;
+    values.temperature = 1 - x.x;
+    values.velocity =
+        100 * Vec2{sx * sx * std::sin(2 * pi * x.y), -sy * sy * std::sin(2 * pi * x.x)};
+    return values;
 }
 
 } // namespace duet::fluid
