@@ -31,12 +31,9 @@ WallMaterial Fluid::Implementation::wall_material() const {
 /// Estimates the slopes at the walls, and with them corrects what the operators make of the rows of
 /// particles next to these.
 void Fluid::Implementation::estimate_slopes() {
-    const WallMaterial material = wall_material();
-    wall_estimate_.slopes(boundary_, evaluation_, particles, material);
-    evaluation_.correct_samples(wall_estimate_.bends(),
-                                wall_estimate_.quartics(),
-                                material.conductivity / (material.density * material.heat_capacity),
-                                smoothness());
+    wall_estimate_.slopes(boundary_, evaluation_, particles, wall_material());
+    evaluation_.correct_samples(
+        wall_estimate_.bends(), wall_estimate_.quartics(), diffusivity(), smoothness());
 }
 
 /// Books what passes through each wall cell in this step.

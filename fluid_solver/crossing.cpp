@@ -175,7 +175,7 @@ bool Fluid::Implementation::put_before(std::size_t a, const Boundary::Crossing& 
     for (int corner = 0; corner < 3; ++corner) {
         put(a, place - clearance * config.spacing * n);
         const auto wall = boundary_.nearest(particles.position(a));
-        if (wall.face == nullptr || wall.distance > 0) {
+        if (wall.distance > 0) {
             return true;
         }
         place = wall.point;

@@ -111,8 +111,7 @@ Values Fluid::Implementation::at(Vec2 point) const {
     point = grid_.wrapped(point);
     // A point on a wall is taken just before it.
     const double skin = 1e-3 * config.spacing;
-    if (const auto wall = boundary_.nearest(point);
-        wall.face != nullptr && std::abs(wall.distance) < skin) {
+    if (const auto wall = boundary_.nearest(point); std::abs(wall.distance) < skin) {
         point = wall.point - skin * wall.face->normal;
     } else if (!boundary_.contains(point)) {
         const double nan = std::numeric_limits<double>::quiet_NaN();

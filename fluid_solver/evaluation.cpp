@@ -95,7 +95,7 @@ void drop_hidden(const std::vector<Contact>& contacts, Neighbours& near) {
     }
 }
 
-/// Of the point of a wall that is nearest to the particle.
+/// Distance of the particle from the nearest point of a wall that it sees, and of all of them, m.
 double distance(const Contact& contact) {
     const double beyond = std::max({0.0, -contact.before(), -contact.after()});
     return beyond > 0 ? std::hypot(contact.distance, beyond) : contact.distance;
@@ -343,11 +343,7 @@ bool Evaluation::gather(
     work.quartic.reset();
     if (scene.input.fourth_order && work.contacts.size() == 1 && w.temperature.K != 0
         && work.contacts[0].distance < sample_depth_) {
-        work.quartic = quartic_moments(
-            work.contacts[0],
-            s.near,
-            {&pairs_[a / chunk_size * chunk_blocks_ + first_block_[a]], s.near.eights()},
-            work.directions);
+        work.quartic = quartic_moments(work.contacts[0], s.near, pairs(a), work.directions);
     }
     work.pressure = correction(m, w.N_n);
     s.operators.add(m, w.u.S_xi + w.u_slips.N_n, w.u.S_xi_xi + w.u_slips.N_d_n_n, w.u);

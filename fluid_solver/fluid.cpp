@@ -141,11 +141,9 @@ double Fluid::Implementation::smoothness() const {
 
 double Fluid::Implementation::stable_step() const {
     const double dx = config.spacing;
-    const double diffusivity =
-        heat_ ? config.conductivity / (config.density * config.heat_capacity) : 0;
     double limit = std::numeric_limits<double>::infinity();
     const double nu = still_ ? 0 : config.kinematic_viscosity;
-    if (const double slowest = std::max(nu, diffusivity); slowest > 0) {
+    if (const double slowest = std::max(nu, heat_ ? diffusivity() : 0); slowest > 0) {
         const double share = paper_ ? paper_diffusion : courant_diffusion;
         limit = std::min(limit, share * dx * dx / slowest);
     }
@@ -383,7 +381,7 @@ void Fluid::Implementation::evaluate(double dt) {
                     {config.spacing,
                      volume,
                      config.kinematic_viscosity,
-                     config.conductivity / (config.density * config.heat_capacity),
+                     diffusivity(),
                      shift_factor(h, speed_, dt, config.spacing),
                      heat_,
                      dt,

@@ -44,6 +44,9 @@ class Fluid::Implementation {
     int advance(double window, const InterfaceState& start, const InterfaceState& end);
     double stable_step() const;
     double smoothness() const;
+    double diffusivity() const { // of heat, m2/s
+        return config.conductivity / (config.density * config.heat_capacity);
+    }
     Ledger ledger() const;
     void mark();
     std::vector<std::string> model() const;

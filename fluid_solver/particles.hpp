@@ -135,6 +135,7 @@ struct ParticleArrays {
     std::vector<std::uint16_t> compartment; ///< of the fluid's connected parts
 };
 
+/// Sorted by the cells of a grid whenever sort() is called.
 class Particles : public ParticleArrays {
   public:
     std::size_t size() const { return x.size(); }
@@ -156,7 +157,7 @@ class Particles : public ParticleArrays {
     ParticleArrays spare_;
     std::vector<std::uint32_t> cell_; ///< of each particle, then its place in the new order
     std::vector<std::uint32_t> cell_start_;
-    std::vector<std::uint32_t> next_; ///< place of a cell, by range of particles
+    std::vector<std::uint32_t> next_; ///< by range and cell: how many, then where the next one goes
 };
 
 } // namespace duet::fluid

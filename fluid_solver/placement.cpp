@@ -98,7 +98,7 @@ void Fluid::Implementation::put_inside() {
     for_particles(particles.size(), config.threads, [&](std::size_t a) {
         for (int side = 0; side < 2 && boundary_.near(particles.position(a)); ++side) {
             const auto wall = boundary_.nearest(particles.position(a));
-            if (wall.face == nullptr || wall.distance > 0) {
+            if (wall.distance > 0) {
                 break;
             }
             put(a, wall.point - clearance * config.spacing * wall.face->normal);

@@ -82,7 +82,7 @@ class Pressure {
     std::vector<Drive> drive_;
     std::vector<float> p_, next_p_;
     std::vector<Booked> booked_;   ///< by chunk
-    std::vector<float> turning_;   ///< -2 det grad v, 1/s2
+    std::vector<float> turning_;   ///< -2 det grad v, 1/s2, as far as the flow is smooth
     std::vector<float> curvature_; ///< sum V F (p_a - p_b)
 };
 

@@ -16,7 +16,7 @@ parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.R
 parser.add_argument("rayleigh", type=float)
 parser.add_argument("cells", type=int, help="along a side; even, 8 or more")
 parser.add_argument("end", type=float, help="in L^2/alpha")
-parser.add_argument("file", help="table to write, CSV")
+parser.add_argument("file", type=argparse.FileType("w"), help="table to write, CSV")
 given = parser.parse_args()
 if given.cells < 8 or given.cells % 2 or not given.rayleigh > 0 or not given.end > 0:
     parser.error("rayleigh and end must be positive, cells even and 8 or more")
